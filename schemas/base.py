@@ -1,0 +1,26 @@
+"""The base of every model: frozen, unknown fields refused, no NaN and no infinity."""
+
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, StringConstraints
+
+
+class Strict(BaseModel):
+    """A frozen model that refuses unknown fields, NaN and infinities."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+class Posted(Strict):
+    """A model of what clients post: no conversion either, ``true`` is no number."""
+
+    model_config = ConfigDict(strict=True)
+
+
+Identifier = Annotated[str, StringConstraints(pattern=r"^[A-Za-z_][A-Za-z0-9_]{0,63}$")]
+"""The name of a state, a control, a parameter, a phase: a letter, then letters, digits, _."""
+
+Label = Annotated[
+    str, StringConstraints(min_length=1, max_length=200, pattern=r"^[^\x00-\x1f\x7f]*$")
+]
+"""Free text on one line, such as the name of a problem."""

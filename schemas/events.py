@@ -1,0 +1,55 @@
+"""What happens during a job, as it happens. Events go to terminals, SSE streams and logs."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, TypeAdapter
+
+from schemas.base import Strict
+
+
+class StageStarted(Strict):
+    """The pipeline entered a stage."""
+
+    type: Literal["stage"] = "stage"
+    stage: Literal["build", "solve", "refine", "certify"]
+
+
+class NlpIteration(Strict):
+    """One iteration of the NLP solver on mesh ``mesh`` (from 0). Violation is in scaled rows."""
+
+    type: Literal["nlp_iteration"] = "nlp_iteration"
+    mesh: int
+    iteration: int
+    objective: float | None
+    violation: float | None
+    seconds: float
+
+
+class MeshSolved(Strict):
+    """One mesh was solved and its error estimated."""
+
+    type: Literal["mesh"] = "mesh"
+    mesh: int
+    segments: int
+    max_error: float | None
+    tolerance: float | None
+    objective: float | None
+    nlp_iterations: int
+    seconds: float
+
+
+class StateChanged(Strict):
+    """The job moved to another state. ``terminal`` ends the stream."""
+
+    type: Literal["state"] = "state"
+    status: str
+    terminal: bool
+    attempt: int = 0
+    message: str = ""
+
+
+Event = Annotated[
+    StageStarted | NlpIteration | MeshSolved | StateChanged, Field(discriminator="type")
+]
+EngineEvent = StageStarted | NlpIteration | MeshSolved
+event_adapter: TypeAdapter[Event] = TypeAdapter(Event)

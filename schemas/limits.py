@@ -1,0 +1,27 @@
+"""The published limits on the size of a model. A problem over one of them is refused by name."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class ModelLimits:
+    """What one problem may hold."""
+
+    phases: int = 1
+    states: int = 200
+    controls: int = 200
+    parameters: int = 1000
+    integrals: int = 100
+    constraints: int = 200
+    """In a phase's ``path``, and as many in its ``boundary``."""
+    segments: int = 20_000
+    """Of any mesh; the first mesh has at most a quarter of them."""
+    nodes: int = 20_000
+    """Operations, names and numbers of all expressions together."""
+    values: int = 500_000
+    """Numbers, texts, lists and objects of the whole document."""
+    nesting: int = 64
+    """Lists and objects within each other."""
+
+
+MODEL_LIMITS = ModelLimits()

@@ -1,0 +1,8 @@
+"""JSON pointers (RFC 6901)."""
+
+Part = str | int
+
+
+def pointer(*parts: Part) -> str:
+    """The pointer that leads through ``parts``; no parts point at the whole document."""
+    return "".join("/" + str(part).replace("~", "~0").replace("/", "~1") for part in parts)

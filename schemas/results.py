@@ -1,0 +1,166 @@
+"""What a solve returns: trajectories, mesh diagnostics and the certificate.
+
+Sizes: a series has one number per time of its group; a curve has one row of Chebyshev
+coefficients per segment. Units are SI throughout.
+"""
+
+from enum import StrEnum
+from typing import Literal
+
+from pydantic import Field
+
+from schemas.base import Strict
+
+FORMAT = 1
+"""The version of this result format; it grows when a field changes its meaning."""
+
+
+class SolutionStatus(StrEnum):
+    """How the mathematics ended. ``converged`` means optimal, meshed and certified."""
+
+    CONVERGED = "converged"
+    ACCEPTABLE = "acceptable"
+    CERTIFICATE_FAILED = "certificate_failed"
+    LOCALLY_INFEASIBLE = "locally_infeasible"
+    DIVERGED = "diverged"
+    UNBOUNDED = "unbounded"
+    ITERATION_LIMIT = "iteration_limit"
+    TIME_LIMIT = "time_limit"
+    CANCELLED = "cancelled"
+    INVALID_NUMBER = "invalid_number"
+    MESH_LIMIT = "mesh_limit"
+    COMPLEMENTARITY_STALLED = "complementarity_stalled"
+
+
+class Group(Strict):
+    """Series on their common times: the values at the nodes of the transcription."""
+
+    time: list[float]
+    values: dict[str, list[float | None]]
+
+
+class CurveGroup(Strict):
+    """Piecewise polynomials on common breaks, the method's own interpolant.
+
+    On the segment from ``breaks[k]`` to ``breaks[k+1]`` a series is the sum over j of
+    ``coefficients[name][k][j] * T_j(s)``, where s runs from -1 to 1 over the segment and T_j is
+    the Chebyshev polynomial of the first kind (well conditioned at any degree).
+    """
+
+    breaks: list[float]
+    coefficients: dict[str, list[list[float]]]
+
+
+class PhaseResult(Strict):
+    """One phase: its knots, node values by group, and continuous curves by group."""
+
+    name: str
+    knots: list[float]
+    groups: dict[str, Group]
+    curves: dict[str, CurveGroup]
+    integrals: dict[str, float | None] = Field(default_factory=dict)
+
+
+class MeshIteration(Strict):
+    """One mesh of the refinement. ``errors`` has one entry per segment, as has ``spans``."""
+
+    segments: int
+    max_error: float | None
+    errors: list[float | None]
+    spans: list[tuple[float, float]]
+    objective: float | None
+    nlp_iterations: int
+    seconds: float
+    status: str
+
+
+class MeshRefinement(Strict):
+    """The history of the mesh. ``tolerance`` is null where refinement was off."""
+
+    tolerance: float | None
+    converged: bool
+    iterations: list[MeshIteration]
+
+
+class Check(Strict):
+    """One check of the certificate. ``judged`` false: reported, without a say in the verdict."""
+
+    name: str
+    value: float | None
+    tolerance: float | None
+    unit: str
+    passed: bool
+    judged: bool
+    where: str | None = None
+
+
+class Certificate(Strict):
+    """The independent judgement of the published curves against the problem's own text."""
+
+    verdict: Literal["certified", "not_certified", "not_checked"]
+    checks: list[Check]
+    note: str = (
+        "The certificate shows that the published curves satisfy the stated problem. "
+        "It does not prove optimality: a minimum is a local one."
+    )
+
+
+class Residual(Strict):
+    """A violated constraint: its group's name, phase and time, the violation in its own unit."""
+
+    name: str
+    phase: str | None
+    time: float | None
+    value: float
+
+
+class SolverReport(Strict):
+    """What the NLP solver did on the last mesh.
+
+    ``residuals`` are ranked, the worst first; ``seconds`` were spent inside of the NLP solver.
+    """
+
+    backend: str
+    iterations: int
+    status: str
+    residuals: list[Residual]
+    seconds: float = 0.0
+    variables: int
+    constraints: int
+
+
+class Timing(Strict):
+    """Wall-clock seconds of each part; they add up to ``total`` but for bookkeeping."""
+
+    build: float
+    solve: float
+    refine: float
+    certify: float
+    total: float
+
+
+class Reproduce(Strict):
+    """What is needed to compute this again."""
+
+    spec_sha256: str
+    versions: dict[str, str]
+    seed: int | None = None
+
+
+class Solution(Strict):
+    """A finished solve. An infeasible problem, too, is a solution with a status."""
+
+    format: int = FORMAT
+    name: str
+    status: SolutionStatus
+    objective: float | None
+    message: str
+    advice: list[str] = Field(default_factory=list)
+    warnings: list[str] = Field(default_factory=list)
+    phases: list[PhaseResult]
+    mode_sequence: None = None
+    mesh_refinement: MeshRefinement
+    certificate: Certificate
+    solver: SolverReport
+    timing: Timing
+    reproduce: Reproduce
