@@ -1,0 +1,1 @@
+"""Measured comparisons, each printing its ratios side by side in one run (``make bench``)."""

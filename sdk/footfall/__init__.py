@@ -1,0 +1,65 @@
+"""Footfall: trajectory optimization, also through contact, as a service or in this process.
+
+>>> import footfall  # doctest: +SKIP
+>>> result = footfall.solve("examples/cart_pole.json")  # doctest: +SKIP
+>>> with footfall.Client("http://127.0.0.1:8000") as client:  # doctest: +SKIP
+...     result = client.wait(client.submit("examples/cart_pole.json").id)
+
+Names are loaded when they are first used, so that importing the package costs nothing.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from footfall import errors
+    from footfall.client import Client, Job
+    from footfall.curves import Curve, Curves
+    from footfall.local import solve
+    from footfall.report import render, render_svg
+    from footfall.result import NodeValues, PhaseResult, Result
+    from footfall.sse import Event
+    from footfall.transport import Retries
+
+__all__ = [
+    "Client",
+    "Curve",
+    "Curves",
+    "Event",
+    "Job",
+    "NodeValues",
+    "PhaseResult",
+    "Result",
+    "Retries",
+    "errors",
+    "render",
+    "render_svg",
+    "solve",
+]
+
+_HOMES = {
+    "Client": "client",
+    "Curve": "curves",
+    "Curves": "curves",
+    "Event": "sse",
+    "Job": "client",
+    "NodeValues": "result",
+    "PhaseResult": "result",
+    "Result": "result",
+    "Retries": "transport",
+    "render": "report",
+    "render_svg": "report",
+    "solve": "local",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name == "errors":
+        return import_module("footfall.errors")
+    if name not in _HOMES:
+        raise AttributeError(f"module 'footfall' has no attribute {name!r}")
+    return getattr(import_module(f"footfall.{_HOMES[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

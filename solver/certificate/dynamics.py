@@ -1,0 +1,73 @@
+"""Do the curves obey the dynamics? Every segment is integrated anew from its own start."""
+
+import itertools
+import math
+
+import numpy as np
+
+from schemas.results import Check
+from solver.certificate.case import Case, PhaseCase
+from solver.certificate.findings import Finding, judge, worst_sample
+from solver.certificate.integration import EVALUATIONS, Integrator, Unfinished
+from solver.numeric import Array
+
+PLACES = np.linspace(-1.0, 1.0, 5)
+"""Where in a segment the two are compared: the quarters and the end."""
+
+WORK = 20_000_000
+"""Rates of single states in one phase after which a stiff one is given up: a few seconds."""
+
+
+def interval_defect(case: Case) -> Check | None:
+    """The largest distance between the curves and the integrated motion.
+
+    Each segment starts at the curve's own state and follows the curve's own control, with the
+    limits from inside the segment at its ends. Distances are relative to one plus the state's
+    largest size in the phase.
+    """
+    findings = [_defect(phase, case.tolerance) for phase in case.phases]
+    return judge("interval defect", findings, case.tolerance)
+
+
+def _defect(phase: PhaseCase, tolerance: float) -> Finding:
+    curve = phase.trajectory.states.grid(PLACES)
+    try:
+        motion = _integrated(phase, curve[:, :, 0], tolerance)
+    except Unfinished as reason:
+        return Finding(math.nan, f"{_culprit(phase, reason)}: {reason}")
+    sizes = np.abs(motion - curve) / phase.scale[:, None, None]
+    times = phase.trajectory.time(np.arange(curve.shape[1])[:, None], PLACES)
+    states = phase.spec.system.states
+    return worst_sample(phase.name, states, times.ravel(), sizes.reshape(len(states), -1))
+
+
+def _culprit(phase: PhaseCase, reason: Unfinished) -> str:
+    """The fastest state when the integrator gave up, one without a finite rate first."""
+    segments = phase.trajectory.segments
+    speed = np.nan_to_num(np.abs(reason.rates), nan=np.inf)
+    row, segment = divmod(int(np.argmax(speed)), segments)
+    time = phase.trajectory.time(np.array(segment), reason.at)
+    return f"phase {phase.name}, {phase.spec.system.states[row]}, t = {time:.6g} s"
+
+
+def _integrated(phase: PhaseCase, start: Array, tolerance: float) -> Array:
+    """All segments at once from ``start`` (states, segments) over s: (states, segments, places).
+
+    scipy judges a step by the root mean square over all of it, in which one bad segment of N
+    hides behind the others; the tolerance is divided by sqrt(N) to make up for it.
+    """
+    trajectory = phase.trajectory
+    half, every = trajectory.lengths / 2, np.arange(trajectory.segments)
+
+    def rates(s: float, y: Array) -> Array:
+        u = trajectory.controls.grid(np.array([s]))[:, :, 0]
+        f = phase.dynamics(trajectory.time(every, s), y.reshape(start.shape), u)
+        return np.asarray((f * half).ravel())
+
+    evaluations = max(2_000, min(EVALUATIONS, WORK // start.size))
+    tight = min(1e-10, tolerance / 1000) / math.sqrt(trajectory.segments)
+    integrator = Integrator(tight, evaluations)
+    motion = [start.ravel()]
+    for a, b in itertools.pairwise(PLACES):
+        motion.append(integrator.advance(rates, a, motion[-1], b))
+    return np.stack(motion, axis=1).reshape(*start.shape, len(PLACES))

@@ -1,0 +1,60 @@
+"""The program: variables, stage groups and sums. In SI units; scaling happens in assembly.
+
+minimize sum_0(w)  subject to  lower <= rows(w) <= upper,  sum_j(w) = 0 for j >= 1
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver.nlp.stages import StageGroup
+from solver.nlp.variables import Variables
+
+Array = NDArray[np.float64]
+
+
+class RowLabel(NamedTuple):
+    """What a constraint row is: its name, its phase, its place there (NaN: the ends)."""
+
+    name: str
+    phase: int | None
+    fraction: float
+
+
+@dataclass(frozen=True, slots=True)
+class Program:
+    """A nonlinear program made of stage groups.
+
+    ``sum_names`` names the sums from 1 on (lifted integrals); sum 0 is the objective.
+    """
+
+    variables: Variables
+    groups: tuple[StageGroup, ...]
+    sum_names: tuple[str, ...] = ()
+
+    @property
+    def own_rows(self) -> int:
+        """Rows of all groups, without the sums."""
+        return sum(len(group.rows.names) * group.stages for group in self.groups)
+
+    @property
+    def rows(self) -> int:
+        """All rows: the groups', then one for each lifted integral."""
+        return self.own_rows + len(self.sum_names)
+
+    def row_vector(self, attribute: str, sums: float) -> Array:
+        """An attribute of ``Rows`` for every row, ``sums`` for the rows of the sums."""
+        parts = [np.tile(getattr(group.rows, attribute), group.stages) for group in self.groups]
+        return np.concatenate([*parts, np.full(len(self.sum_names), sums)])
+
+    def labels(self) -> Iterator[RowLabel]:
+        """The label of every row, in order."""
+        for group in self.groups:
+            for stage in range(group.stages):
+                for row, name in enumerate(group.rows.names):
+                    yield RowLabel(name, group.phase, float(group.rows.fractions[row, stage]))
+        for name in self.sum_names:
+            yield RowLabel(f"integral {name}", None, float("nan"))

@@ -1,0 +1,23 @@
+"""The problem's expressions and the published curves in numpy, independent of the NLP.
+
+Shared by the certificate and the mesh error; imports no casadi.
+"""
+
+from solver.numeric.phase import Along, along, dynamics, evaluate
+from solver.numeric.quadrature import Integral, gauss, integrate
+from solver.numeric.tape import Array
+from solver.numeric.trajectory import MalformedCurves, Samples, Trajectory
+
+__all__ = [
+    "Along",
+    "Array",
+    "Integral",
+    "MalformedCurves",
+    "Samples",
+    "Trajectory",
+    "along",
+    "dynamics",
+    "evaluate",
+    "gauss",
+    "integrate",
+]

@@ -1,0 +1,106 @@
+"""The whole story on one page: problem -> model -> meshes -> certificate -> solution."""
+
+import math
+import time
+from collections.abc import Callable
+
+from schemas.events import EngineEvent, MeshSolved
+from schemas.problem import Problem
+from schemas.results import Solution
+from solver.attempt import Attempt, Start, attempt
+from solver.certificate import certify
+from solver.mesh import Mesh
+from solver.model import build_model
+from solver.refinement.subdivide import refine
+from solver.run import Run
+from solver.solution.conclude import choose, conclude, snapshot
+from solver.trajectory import initial_guess
+from solver.transcriptions import make_transcription
+from solver.transcriptions.extract import finite
+
+
+def _ignore(_: object) -> None:
+    """Take no notice."""
+
+
+def _never() -> bool:
+    return False
+
+
+def solve(
+    problem: Problem,
+    on_event: Callable[[EngineEvent], None] = _ignore,
+    deadline: float | None = None,
+    should_stop: Callable[[], bool] = _never,
+    on_snapshot: Callable[[Solution], None] = _ignore,
+) -> Solution:
+    """Solve a checked problem.
+
+    Parameters
+    ----------
+    problem
+        As ``schemas.reading.read_problem`` gives it.
+    on_event
+        Called with every stage, NLP iteration and solved mesh.
+    deadline
+        When to end at the latest, in seconds of ``time.monotonic``; the problem's own limit
+        counts too.
+    should_stop
+        Asked at every NLP iteration; true ends the solve with the best iterate.
+    on_snapshot
+        Called with an uncertified solution after each mesh, so that a killed solve leaves one.
+
+    Returns
+    -------
+    The solution, whatever its status. Its times are SI seconds of the motion.
+
+    Raises
+    ------
+    InvalidModel
+        If the model has no finite value at the initial guess.
+    EngineFault
+        If the NLP solver itself fails.
+    """
+    limit = time.monotonic() + problem.limits.seconds
+    run = Run(on_event, min(limit, math.inf if deadline is None else deadline), should_stop)
+    with run.stage("build"):
+        model, transcription = build_model(problem), make_transcription(problem.method)
+        meshes = [Mesh.uniform(problem.method.segments) for _ in model.phases]
+        guesses = [initial_guess(phase, problem.guess) for phase in model.phases]
+
+    attempts: list[Attempt] = []
+    start: Start | None = Start(0, meshes, guesses)
+    while start is not None:
+        attempts.append(attempt(problem, model, transcription, start, run))
+        on_event(_mesh_event(problem, attempts))
+        on_snapshot(snapshot(problem, attempts, run))
+        start = _next(problem, transcription.order, start, attempts[-1])
+
+    with run.stage("certify"):
+        chosen = choose(attempts)
+        certificate = certify(problem, chosen.phases, finite(chosen.outcome.objective))
+    return conclude(problem, attempts, certificate, run)
+
+
+def _next(problem: Problem, order: int, start: Start, last: Attempt) -> Start | None:
+    """The next mesh, or None where this one is the last."""
+    settings = problem.refinement
+    if settings is None or not last.optimal or last.max_error <= settings.tolerance:
+        return None
+    if start.number + 1 >= settings.max_iterations:
+        return None
+    meshes = refine(start.meshes, last.errors, order, settings)
+    return None if meshes is None else Start(start.number + 1, meshes, last.trajectories)
+
+
+def _mesh_event(problem: Problem, attempts: list[Attempt]) -> MeshSolved:
+    last = attempts[-1]
+    return MeshSolved(
+        mesh=len(attempts) - 1,
+        segments=sum(len(errors) for errors in last.errors),
+        max_error=finite(last.max_error),
+        tolerance=problem.refinement.tolerance if problem.refinement else None,
+        objective=finite(last.outcome.objective),
+        nlp_iterations=last.outcome.iterations,
+        seconds=last.seconds,
+    )

@@ -1,0 +1,60 @@
+"""The circumstances of one solve: its clock, its deadline, who listens and who may stop it."""
+
+import math
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import Literal
+
+from schemas.events import EngineEvent, NlpIteration, StageStarted
+from schemas.results import Timing
+from solver.backends import Watch
+
+Stage = Literal["build", "solve", "refine", "certify"]
+
+
+@dataclass(slots=True)
+class Run:
+    """Measures the stages, passes events on, and makes the watch of each NLP solve."""
+
+    on_event: Callable[[EngineEvent], None]
+    deadline: float
+    should_stop: Callable[[], bool]
+    started: float = field(default_factory=time.monotonic)
+    spent: dict[Stage, float] = field(default_factory=dict)
+
+    @contextmanager
+    def stage(self, name: Stage) -> Iterator[None]:
+        """Announce and time one stage of the pipeline."""
+        self.on_event(StageStarted(stage=name))
+        began = time.monotonic()
+        try:
+            yield
+        finally:
+            self.spent[name] = self.spent.get(name, 0.0) + time.monotonic() - began
+
+    def watch(self, mesh: int) -> Watch:
+        """The watch over the NLP solve on one mesh."""
+        began = time.monotonic()
+
+        def report(iteration: int, objective: float, violation: float) -> None:
+            self.on_event(
+                NlpIteration(
+                    mesh=mesh,
+                    iteration=iteration,
+                    objective=objective if math.isfinite(objective) else None,
+                    violation=violation if math.isfinite(violation) else None,
+                    seconds=time.monotonic() - began,
+                )
+            )
+
+        return Watch(self.deadline, self.should_stop, report)
+
+    def timing(self) -> Timing:
+        """Seconds of each stage so far."""
+        stages: tuple[Stage, ...] = ("build", "solve", "refine", "certify")
+        return Timing(
+            **{name: self.spent.get(name, 0.0) for name in stages},
+            total=time.monotonic() - self.started,
+        )

@@ -1,0 +1,1 @@
+"""From the NLP's point to the published solution."""

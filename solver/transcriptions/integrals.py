@@ -1,0 +1,62 @@
+"""How named integrals enter the program: added up where they arise, or lifted.
+
+An integral that enters the objective with a constant factor, and nothing else, is added up
+segment by segment. Any other becomes a decision variable with a row that ties it to its sum, so
+that the Hessian stays sparse.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+
+from solver.expressions import SX
+from solver.model.symbolic import PhaseFunctions
+from solver.nlp.variables import Array
+from solver.trajectory import Trajectory
+
+_SAMPLES = 201
+
+
+@dataclass(frozen=True, slots=True)
+class IntegralUse:
+    """Factors in the objective (0 where lifted) and positions of those lifted, over all phases."""
+
+    factors: Array
+    lifted: tuple[int, ...]
+
+    @property
+    def direct(self) -> tuple[int, ...]:
+        """Positions of those that are added up in place."""
+        return tuple(i for i in range(len(self.factors)) if i not in self.lifted)
+
+    def weights(self, counts: Sequence[int]) -> list[Array]:
+        """What each phase's integrals add to the sums: one array (sums, integrals) per phase."""
+        total = np.zeros((1 + len(self.lifted), len(self.factors)))
+        total[0] = self.factors
+        for row, position in enumerate(self.lifted, start=1):
+            total[row, position] = 1.0
+        return np.split(total, np.cumsum(counts)[:-1], axis=1)
+
+
+def classify(objective: SX, constraints: SX, integrals: SX) -> IntegralUse:
+    """Which integrals can be added up in place, and with what factor."""
+    slopes = ca.densify(ca.gradient(objective, integrals))
+    constrained = ca.which_depends(constraints, integrals, 1, False)
+    lifted = tuple(i for i in range(integrals.numel()) if constrained[i] or ca.symvar(slopes[i]))
+    factors = [0.0 if i in lifted else float(ca.evalf(slopes[i])) for i in range(integrals.numel())]
+    return IntegralUse(np.array(factors), lifted)
+
+
+def guessed_integrals(functions: PhaseFunctions, guess: Trajectory) -> Array:
+    """The integrals (integrals,) along a guess, by the trapezoid rule.
+
+    1 where that gives zero or no number: roots and quotients of integrals need a slope there.
+    """
+    fractions = np.linspace(0.0, 1.0, _SAMPLES)
+    times = guess.start + (guess.end - guess.start) * fractions
+    x, u = guess.sample_states(fractions), guess.sample_controls(fractions)
+    integrands = functions.integrands.map(_SAMPLES)(x, u, times[None, :]).full()
+    totals = np.trapezoid(integrands, times, axis=1)
+    return np.where(np.isfinite(totals) & (totals != 0), totals, 1.0)

@@ -1,0 +1,31 @@
+"""Trapezoidal collocation (003, section 7.4)."""
+
+import numpy as np
+
+from footfall.curves import fit
+from solver.mesh.polynomials import from_powers
+from solver.transcriptions.base import Array, Collocation, Node, Segment, Transcription
+
+
+class Trapezoidal(Transcription):
+    """Control and derivative piecewise linear, state piecewise quadratic; order 2."""
+
+    order = 2
+    nodes = (Node(0.0), Node(1.0))
+    weights = (1 / 2, 1 / 2)
+
+    def collocate(self, segment: Segment) -> Collocation:
+        """The change of the state is the trapezoid rule over its derivative (7.9)."""
+        a, b = segment.points
+        mean = (segment.derivative(a) + segment.derivative(b)) / 2
+        return Collocation(segment.points, b.x - a.x - segment.h * mean)
+
+    def state_curve(self, x: Array, f: Array, h: Array) -> Array:
+        """Quadratic from the state at the start and the two slopes (7.13.3)."""
+        slopes = h[:, None] * f
+        powers = [x[:, 0], slopes[:, 0], (slopes[:, 1] - slopes[:, 0]) / 2]
+        return from_powers(np.stack(powers, axis=1))
+
+    def control_curve(self, u: Array) -> Array:
+        """Linear between the knots (7.13.2)."""
+        return fit(2 * self.fractions - 1, u)

@@ -1,0 +1,61 @@
+"""Every example converges, certified, and meets what is known of its optimum."""
+
+import json
+from typing import Any
+
+import pytest
+
+import examples
+from schemas.reading import read_problem
+from schemas.results import Solution, SolutionStatus
+from solver import solve
+
+
+@pytest.fixture(scope="module", params=examples.names())
+def solved(request: pytest.FixtureRequest) -> tuple[dict[str, Any], Solution]:
+    document = examples.load(request.param)
+    return document, solve(read_problem(document))
+
+
+def test_converges_with_a_certificate(solved: tuple[dict[str, Any], Solution]) -> None:
+    _, solution = solved
+    assert solution.status is SolutionStatus.CONVERGED, solution.message
+    assert solution.certificate.verdict == "certified"
+    assert solution.mesh_refinement.converged
+
+
+def test_meets_what_is_known(solved: tuple[dict[str, Any], Solution]) -> None:
+    document, solution = solved
+    assert document["known"], "an example states what is known of its optimum"
+    for known in document["known"]:
+        value = getattr(solution, known["quantity"])
+        error = abs(value - known["value"]) / max(1.0, abs(known["value"]))
+        assert error <= known["tolerance"], f"{value} against {known['value']}"
+
+
+def test_the_result_is_plain_json(solved: tuple[dict[str, Any], Solution]) -> None:
+    _, solution = solved
+    text = solution.model_dump_json()
+    json.loads(text, parse_constant=lambda word: pytest.fail(f"{word} in a result"))
+    assert Solution.model_validate_json(text) == solution
+
+
+@pytest.mark.parametrize(
+    ("method", "objective"),
+    [
+        ({"kind": "hermite_simpson", "segments": 25, "form": "separated"}, 58.80542547),
+        ({"kind": "hermite_simpson", "segments": 25, "form": "compressed"}, 58.80542547),
+    ],
+)
+def test_cart_pole_on_the_papers_mesh(method: dict[str, Any], objective: float) -> None:
+    """003, section 7.8: 25 Hermite-Simpson segments, one mesh."""
+    document = examples.load("cart_pole") | {"method": method, "refinement": None}
+    solution = solve(read_problem(document))
+    assert solution.objective == pytest.approx(objective, abs=1e-7)
+
+
+def test_block_on_the_trapezoidal_mesh() -> None:
+    """003, section 7.7: 25 trapezoidal segments give 12.0749614."""
+    method = {"kind": "trapezoidal", "segments": 25}
+    document = examples.load("block_min_force") | {"method": method, "refinement": None}
+    assert solve(read_problem(document)).objective == pytest.approx(12.0749614, abs=1e-6)

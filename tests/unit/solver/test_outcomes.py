@@ -1,0 +1,208 @@
+"""How a solve can end, each end reached by a real problem through the whole pipeline."""
+
+import time
+from typing import Any
+
+import pytest
+
+import examples
+from schemas.errors import InvalidModel
+from schemas.events import EngineEvent, MeshSolved, NlpIteration, StageStarted
+from schemas.reading import read_problem
+from schemas.results import Solution, SolutionStatus
+from solver import solve
+from tests.unit.solver.problems import block, solved
+
+
+def test_converged() -> None:
+    solution = solved(block())
+    assert solution.status is SolutionStatus.CONVERGED
+    assert solution.solver.residuals == []
+
+
+def test_infeasible_names_the_constraints() -> None:
+    solution = solved(block(phase={"bounds": {"u": [-3, 3]}}))
+    assert solution.status is SolutionStatus.LOCALLY_INFEASIBLE
+    worst = solution.solver.residuals[0]
+    assert worst.name.startswith("defect")
+    assert worst.phase == "push"
+    assert worst.value > 1e-3
+    assert any(worst.name in line for line in solution.advice)
+
+
+def test_unbounded() -> None:
+    document = block(objective={"minimize": "-final.x"})
+    del document["phases"][0]["final"]["x"]
+    assert solved(document).status is SolutionStatus.UNBOUNDED
+
+
+def test_the_iteration_limit_returns_the_iterate() -> None:
+    solution = solved(block(solver={"max_iterations": 0}))
+    assert solution.status is SolutionStatus.ITERATION_LIMIT
+    assert solution.certificate.verdict == "not_certified"
+    assert solution.phases[0].groups["states"].values["x"][-1] == 1
+
+
+def test_a_deadline_holds_inside_of_the_solver() -> None:
+    document = examples.load("cart_pole") | {"limits": {"seconds": 0.4}, "solver": slow()}
+    document["method"] = {"kind": "hermite_simpson", "segments": 2000}
+    began = time.monotonic()
+    solution = solved(document)
+    assert solution.status is SolutionStatus.TIME_LIMIT
+    assert time.monotonic() - began < 8  # building 2000 segments and certifying included
+
+
+def slow() -> dict[str, Any]:
+    return {"tolerance": 1.1e-14}
+
+
+def test_a_stop_returns_the_best_iterate() -> None:
+    seen: list[NlpIteration] = []
+
+    def note(event: EngineEvent) -> None:
+        if isinstance(event, NlpIteration):
+            seen.append(event)
+
+    document = examples.load("cart_pole") | {"refinement": None}
+    stopped = solved(document, on_event=note, should_stop=lambda: len(seen) >= 6)
+    assert stopped.status is SolutionStatus.CANCELLED
+    assert len(seen) == 6
+    least = min(seen, key=lambda event: event.violation or 0.0)
+    assert stopped.objective == pytest.approx(least.objective)
+    assert "best iterate" in stopped.message
+
+
+def test_a_stop_on_a_later_mesh_keeps_the_solved_one() -> None:
+    meshes: list[MeshSolved] = []
+
+    def note(event: EngineEvent) -> None:
+        if isinstance(event, MeshSolved):
+            meshes.append(event)
+
+    solution = solved(examples.load("cart_pole"), on_event=note, should_stop=lambda: bool(meshes))
+    assert solution.status is SolutionStatus.CANCELLED
+    assert solution.objective == pytest.approx(58.80542547, abs=1e-6)
+    assert len(solution.phases[0].knots) == 26
+
+
+def test_an_exception_of_a_listener_is_not_swallowed() -> None:
+    def fail(event: EngineEvent) -> None:
+        if isinstance(event, NlpIteration):
+            raise LookupError("the listener broke")
+
+    with pytest.raises(LookupError, match="the listener broke"):
+        solved(block(), on_event=fail)
+
+
+def test_a_saturated_quadratic_control_fails_its_certificate() -> None:
+    document = examples.load("double_integrator")
+    document["method"] = {"kind": "hermite_simpson", "segments": 20}
+    solution = solved(document)
+    assert solution.status is SolutionStatus.CERTIFICATE_FAILED
+    assert "control overshoot" in solution.message
+    assert any("linear" in line for line in solution.advice)
+
+
+def test_the_mesh_limit() -> None:
+    document = examples.load("cart_pole")
+    document["refinement"] = {"tolerance": 1e-6, "max_segments": 40}
+    solution = solved(document)
+    assert solution.status is SolutionStatus.MESH_LIMIT
+    assert solution.mesh_refinement.iterations[-1].segments == 40
+    assert not solution.mesh_refinement.converged
+
+
+@pytest.mark.parametrize(
+    ("change", "pointer"),
+    [
+        ({"system": {"derivatives": {"x": "v", "v": "u/x"}}}, "/phases/0/system/derivatives/v"),
+        ({"phase": {"integrals": {"effort": "log(v - 2)"}}}, "/phases/0/integrals/effort"),
+        ({"objective": {"minimize": "log(0 - duration)"}}, "/objective/minimize"),
+    ],
+)
+def test_no_number_at_the_guess(change: dict[str, Any], pointer: str) -> None:
+    with pytest.raises(InvalidModel) as caught:
+        solved(block(**change))
+    assert pointer in [issue.pointer for issue in caught.value.issues]
+    assert all(issue.hint for issue in caught.value.issues)
+
+
+def test_a_root_at_its_bound_may_start_there() -> None:
+    """IPOPT starts inside of the bounds, where log(v) has a value."""
+    document = block(
+        phase={
+            "bounds": {"v": [0, 5]},
+            "initial": {"x": 0},
+            "final": {"x": 1},
+            "integrals": {"effort": "u^2 - log(v)/100"},
+        },
+        guess={"kind": "linear"},
+    )
+    assert solved(document).status in (SolutionStatus.CONVERGED, SolutionStatus.MESH_LIMIT)
+
+
+def test_free_times() -> None:
+    """003, 7.7 in minimum time: T = 2 sqrt(d / u_max), wherever it starts."""
+    document = block(
+        phase={"time": {"initial": [1, 2], "final": [1, 10]}, "bounds": {"u": [-4, 4]}},
+        objective={"minimize": "duration"},
+        method={"kind": "trapezoidal", "segments": 200},
+    )
+    solution = solved(document)
+    assert solution.status is SolutionStatus.CONVERGED
+    assert solution.objective == pytest.approx(1.0, abs=1e-3)
+    assert 1 <= solution.phases[0].knots[0] <= 2
+
+
+def test_a_feasible_motion_without_an_objective() -> None:
+    document = block()
+    del document["objective"]
+    assert solved(document).status is SolutionStatus.CONVERGED
+
+
+def test_no_controls() -> None:
+    document = block(
+        system={"controls": [], "derivatives": {"x": "v", "v": "-x"}},
+        phase={"initial": {"x": 1, "v": 0}, "final": {}, "integrals": {}},
+        guess={"kind": "linear"},
+    )
+    del document["objective"]
+    solution = solved(document)
+    assert solution.status is SolutionStatus.CONVERGED
+    assert solution.phases[0].groups["states"].values["x"][-1] == pytest.approx(0.5403023, abs=1e-6)
+
+
+@pytest.mark.parametrize("form", ["separated", "compressed"])
+def test_path_constraints_and_state_bounds_hold(form: str) -> None:
+    wall = {"name": "wall", "expression": "x + 0.1*v", "upper": 1.02}
+    document = block(
+        phase={"path": [wall], "bounds": {"v": [-1, 1.4]}},
+        method={"kind": "hermite_simpson", "segments": 40, "form": form},
+    )
+    solution = solved(document)
+    assert solution.status is SolutionStatus.CONVERGED
+    assert solution.objective == pytest.approx(12.563, abs=2e-2)
+
+
+def test_the_stages_are_told_in_order() -> None:
+    stages: list[str] = []
+
+    def note(event: EngineEvent) -> None:
+        if isinstance(event, StageStarted):
+            stages.append(event.stage)
+
+    solved(block(refinement=None), on_event=note)
+    assert stages == ["build", "build", "solve", "refine", "certify"]
+
+
+def test_snapshots_are_unchecked_solutions() -> None:
+    snapshots: list[Solution] = []
+    solution = solve(read_problem(examples.load("cart_pole")), on_snapshot=snapshots.append)
+    assert len(snapshots) == len(solution.mesh_refinement.iterations)
+    assert {snapshot.certificate.verdict for snapshot in snapshots} == {"not_checked"}
+
+
+def test_warnings_name_what_is_not_smooth() -> None:
+    integrals = {"effort": "u^2 + 0*abs(u)"}
+    solution = solved(block(phase={"integrals": integrals}))
+    assert any("abs" in warning for warning in solution.warnings)
