@@ -1,0 +1,56 @@
+"""The steps that must not be torn apart, as Lua scripts that the server runs in one go."""
+
+MOVE = """
+-- Compare-and-set of a job's state, its event in the same step.
+-- KEYS: record, problem, result, report, events, live
+-- ARGV: id, to, expected (",a,b,"), token, token afterwards, terminal, message, counter,
+--       retention, memory, events limit, channel, then field, value, ...
+local record, events, live = KEYS[1], KEYS[5], KEYS[6]
+local to, token, after, terminal = ARGV[2], ARGV[4], ARGV[5], ARGV[6] == '1'
+local status = redis.call('HGET', record, 'status')
+if not status then return 0 end
+local now = redis.call('HGET', record, 'token') or ''
+-- A retry of a move whose reply was lost finds its work done.
+if after ~= '' and status == to and now == after then return 1 end
+if not string.find(ARGV[3], ',' .. status .. ',', 1, true) then return 0 end
+if token ~= '' and now ~= token then return 0 end
+redis.call('HSET', record, 'status', to, unpack(ARGV, 13))
+if ARGV[8] ~= '' then redis.call('HINCRBY', record, ARGV[8], 1) end
+local event = cjson.encode({type = 'state', status = to, terminal = terminal,
+  attempt = tonumber(redis.call('HGET', record, 'attempts') or 0), message = ARGV[7]})
+redis.call('XADD', events, 'MAXLEN', '~', ARGV[11], '*', 'event', event)
+redis.call('PUBLISH', ARGV[12], ARGV[1])
+if terminal then
+  redis.call('SREM', live, ARGV[1])
+  for i = 3, 5 do redis.call('EXPIRE', KEYS[i], ARGV[9]) end
+  for i = 1, 2 do redis.call('EXPIRE', KEYS[i], ARGV[10]) end
+end
+return 1
+"""
+
+UPDATE = """
+-- Fields of the live attempt. KEYS: record. ARGV: token, field, value, ...
+if redis.call('HGET', KEYS[1], 'token') ~= ARGV[1] then return 0 end
+redis.call('HSET', KEYS[1], unpack(ARGV, 2))
+return 1
+"""
+
+PUT = """
+-- The result of the live attempt. KEYS: record, result, report. ARGV: token, result, report
+local status = redis.call('HGET', KEYS[1], 'status')
+if status ~= 'running' and status ~= 'cancelling' then return 0 end
+if redis.call('HGET', KEYS[1], 'token') ~= ARGV[1] then return 0 end
+redis.call('SET', KEYS[2], ARGV[2])
+if ARGV[3] == '' then redis.call('DEL', KEYS[3]) else redis.call('SET', KEYS[3], ARGV[3]) end
+redis.call('HSET', KEYS[1], 'has_result', '1')
+return 1
+"""
+
+APPEND = """
+-- An event. KEYS: record, events. ARGV: id, token or '', event, limit, channel
+local token = redis.call('HGET', KEYS[1], 'token')
+if not token or (ARGV[2] ~= '' and token ~= ARGV[2]) then return '' end
+local id = redis.call('XADD', KEYS[2], 'MAXLEN', '~', ARGV[4], '*', 'event', ARGV[3])
+redis.call('PUBLISH', ARGV[5], ARGV[1])
+return id
+"""

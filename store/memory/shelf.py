@@ -1,0 +1,66 @@
+"""What the in-memory ports share: the entries, one lock, and the followers to wake."""
+
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+
+from schemas.errors import UnknownJob
+from schemas.events import Event
+from store.ports import JobRecord, LoggedEvent
+from store.settings import StoreSettings
+
+
+@dataclass(slots=True)
+class Entry:
+    """All that is kept of one job."""
+
+    record: JobRecord
+    problem: bytes
+    result: bytes | None = None
+    report: bytes | None = None
+    events: list[LoggedEvent] = field(default_factory=list)
+    logged: int = 0
+
+
+@dataclass(slots=True)
+class Shelf:
+    """The entries by job id. Every access holds ``lock``."""
+
+    settings: StoreSettings
+    lock: threading.RLock = field(default_factory=threading.RLock)
+    entries: dict[str, Entry] = field(default_factory=dict)
+    waiting: list[tuple[str, threading.Event]] = field(default_factory=list)
+
+    def entry(self, job_id: str) -> Entry:
+        """The entry. Raises UnknownJob."""
+        if job_id not in self.entries:
+            raise UnknownJob(f"There is no job {job_id!r}.", "List yours with GET /v1/jobs.")
+        return self.entries[job_id]
+
+    def log(self, job_id: str, event: Event) -> str:
+        """Append an event, wake the followers; the event's id."""
+        entry = self.entry(job_id)
+        entry.logged += 1
+        logged = LoggedEvent(f"{entry.logged}-0", event)
+        entry.events = [*entry.events, logged][-self.settings.events_limit :]
+        self.wake(job_id)
+        return logged.id
+
+    def wake(self, job_id: str) -> None:
+        """Wake those who follow this job."""
+        for waits_for, changed in self.waiting:
+            if waits_for == job_id:
+                changed.set()
+
+    @contextmanager
+    def listening(self, job_id: str) -> Iterator[threading.Event]:
+        """An event that is set whenever the job has something new."""
+        follower = (job_id, threading.Event())
+        with self.lock:
+            self.waiting.append(follower)
+        try:
+            yield follower[1]
+        finally:
+            with self.lock:
+                self.waiting.remove(follower)

@@ -1,0 +1,46 @@
+"""``python -m worker``: work on the queue of ``REDIS_URL`` until told to end."""
+
+import argparse
+import os
+import sys
+
+from schemas.errors import FootfallError
+from worker import logs
+from worker.main import check, run_worker
+from worker.settings import WorkerSettings, server_url
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run a worker, or check for one; the exit code."""
+    options = _parser().parse_args(arguments)
+    url = options.url or server_url(os.environ)
+    if options.check:
+        alive, words = check(url)
+        sys.stderr.write(words + "\n")
+        return 0 if alive else 1
+    logs.configure(as_json=options.json)
+    try:
+        # Loaded here, once, so that --check is quick and no forked process loads it again.
+        from footfall.report import render  # noqa: PLC0415
+        from solver import solve  # noqa: PLC0415
+        from solver.backends import BACKENDS  # noqa: PLC0415
+
+        settings = WorkerSettings(url=url, name=options.name)
+        run_worker(settings, solve, render, backends=[*BACKENDS])
+    except FootfallError as error:
+        sys.stderr.write(f"{error.message} {error.hint}\n")
+        return 1
+    return 0
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python -m worker", description=__doc__)
+    parser.add_argument("--url", default="", help="the queue server (default: REDIS_URL)")
+    parser.add_argument("--name", default="", help="a unique name (default: made up)")
+    parser.add_argument("--json", action="store_true", help="log JSON lines")
+    parser.add_argument("--check", action="store_true", help="exit 0 if a worker lives here")
+    return parser
+
+
+if __name__ == "__main__":
+    sys.exit(main())
