@@ -1,0 +1,1 @@
+"""The HTTP service: checks problems, queues jobs, serves results. It never solves anything."""

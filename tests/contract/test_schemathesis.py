@@ -1,0 +1,118 @@
+"""Generated requests against the app: it answers as its own OpenAPI document says.
+
+Ids of jobs are mostly replaced by those of fresh jobs, one for each state, since no generator
+hits one by chance; waits are cut to nothing.
+"""
+
+from itertools import cycle
+from typing import Any
+
+import orjson
+import schemathesis
+from hypothesis import HealthCheck, Phase, settings
+from schemathesis import Case, HookContext
+from schemathesis.checks import not_a_server_error
+from schemathesis.specs.openapi.checks import (
+    allow_header_conformance,
+    content_type_conformance,
+    response_schema_conformance,
+    status_code_conformance,
+)
+
+import examples
+from api.app import create_app
+from api.settings import ApiSettings
+from schemas.jobs import JobStatus
+from schemas.reading import canonical, read_problem
+from store.memory import connect
+from store.ports import JobRecord
+from tests.support.solutions import block_move
+
+CHECKS = [
+    not_a_server_error,
+    status_code_conformance,
+    content_type_conformance,
+    response_schema_conformance,
+    allow_header_conformance,
+]
+STORE = connect()
+STORE.queue.announce({"name": "hand", "backends": ["ipopt"]}, ttl=3600)
+APP = create_app(STORE, ApiSettings(stop_grace=60))
+PROBLEM = canonical(read_problem(examples.load("block_min_force")))
+RESULT = orjson.dumps(block_move())
+RUNNING = frozenset({JobStatus.RUNNING})
+
+schema = schemathesis.openapi.from_asgi("/openapi.json", APP)
+numbers = iter(range(10**9))
+
+
+def queued() -> str:
+    job_id = f"{next(numbers):032x}"
+    record = JobRecord(job_id, "local", "block", "0" * 64, JobStatus.QUEUED, created=1.7e9)
+    STORE.jobs.create(record, PROBLEM)
+    return job_id
+
+
+def running() -> str:
+    job_id = queued()
+    STORE.jobs.claim(job_id, "hand")
+    return job_id
+
+
+def solved() -> str:
+    job_id = queued()
+    record = STORE.jobs.claim(job_id, "hand")
+    assert record is not None
+    STORE.results.put(job_id, record.token, RESULT, b"<!doctype html>")
+    STORE.jobs.move(job_id, JobStatus.SUCCEEDED, expect=RUNNING)
+    return job_id
+
+
+def failed() -> str:
+    job_id = running()
+    STORE.jobs.move(job_id, JobStatus.FAILED, expect=RUNNING)
+    return job_id
+
+
+GALLERY = cycle([None, None, *map(examples.load, examples.names())])
+LIVE, ENDED = cycle([queued, solved, running, solved, failed, None]), cycle([solved, failed, None])
+
+
+def path_of(context: HookContext) -> str:
+    assert context.operation is not None
+    return context.operation.path
+
+
+@schema.hook
+def map_path_parameters(context: HookContext, path_parameters: Any) -> Any:
+    """Let most ids be those of jobs; streams only of ended ones, or they would not end."""
+    if path_parameters and "job_id" in path_parameters:
+        make = next(ENDED if path_of(context).endswith("/events") else LIVE)
+        if make is not None:
+            path_parameters["job_id"] = make()
+    return path_parameters
+
+
+@schema.hook
+def map_query(context: HookContext, query: Any) -> Any:
+    """Do not wait."""
+    if query and query.get("wait"):
+        query["wait"] = 0
+    return query
+
+
+@schema.hook
+def map_body(context: HookContext, body: Any) -> Any:
+    """Post good problems too; no generator writes one."""
+    return (next(GALLERY) or body) if path_of(context) == "/v1/jobs" else body
+
+
+@schema.parametrize()
+@settings(
+    max_examples=40,
+    deadline=None,
+    phases=[Phase.explicit, Phase.generate],
+    suppress_health_check=list(HealthCheck),
+)
+def test_the_app_keeps_to_its_document(case: Case) -> None:
+    case.call_and_validate(checks=CHECKS)
