@@ -1,0 +1,8 @@
+"""``python -m footfall``: the command."""
+
+import sys
+
+from footfall.cli import main
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,5 @@
+"""The ``footfall`` command."""
+
+from footfall.cli.main import main
+
+__all__ = ["main"]

@@ -1,0 +1,111 @@
+"""The commands that talk to a service: submit, watch, cancel, result, and solve with --server."""
+
+import argparse
+import sys
+from collections.abc import Mapping
+from typing import Any
+
+from footfall.cli import codes
+from footfall.cli.output import deliver, explain, note, show_json
+from footfall.cli.progress import progress
+from footfall.client import Client, Job
+from footfall.documents import read_json
+from footfall.errors import BadProblem, NoResult
+from footfall.result import Result
+
+
+def client(options: argparse.Namespace) -> Client:
+    """A client of the service that the options name; the key is FOOTFALL_KEY's."""
+    return Client(options.server, options.environment.get("FOOTFALL_KEY"))
+
+
+def submit(options: argparse.Namespace) -> int:
+    """Queue a problem and print the job's id; with --watch go on to its result."""
+    problem = read_json(options.file)
+    if options.watch:
+        return solve_through(options, problem)
+    with client(options) as service:
+        job = _submitted(service, problem, options)
+    if job is None:
+        return codes.BAD_INPUT
+    _show(job, options)
+    return codes.CONVERGED
+
+
+def solve_through(options: argparse.Namespace, problem: dict[str, Any]) -> int:
+    """Submit, follow, print; Ctrl-C cancels the job and keeps its best iterate."""
+    with client(options) as service:
+        job = _submitted(service, problem, options)
+        if job is None:
+            return codes.BAD_INPUT
+        note(f"job {job.id}")
+        try:
+            return _deliver(_followed(service, job.id), options, problem)
+        except KeyboardInterrupt:
+            return _interrupted(service, job.id, options, problem)
+
+
+def watch(options: argparse.Namespace) -> int:
+    """Follow a job to its end; Ctrl-C only stops looking."""
+    with client(options) as service:
+        try:
+            return _deliver(_followed(service, options.id), options)
+        except KeyboardInterrupt:
+            note(f"the job goes on; 'footfall cancel {options.id}' ends it")
+            return codes.INTERRUPTED
+
+
+def cancel(options: argparse.Namespace) -> int:
+    """Cancel a job."""
+    with client(options) as service:
+        _show(service.cancel(options.id, now=options.now), options)
+    return codes.CONVERGED
+
+
+def result(options: argparse.Namespace) -> int:
+    """Fetch the result of an ended job."""
+    with client(options) as service:
+        return _deliver(service.result(options.id), options)
+
+
+def _submitted(service: Client, problem: dict[str, Any], options: argparse.Namespace) -> Job | None:
+    try:
+        return service.submit(problem)
+    except BadProblem as error:
+        if options.json:
+            raise
+        note(explain(error.issues, problem, options.file))
+        return None
+
+
+def _followed(service: Client, job_id: str) -> Result:
+    with progress(sys.stderr) as shown:
+        return service.wait(job_id, on_event=shown)
+
+
+def _interrupted(
+    service: Client, job_id: str, options: argparse.Namespace, problem: Mapping[str, Any]
+) -> int:
+    note("cancelling; once more leaves the job to itself")
+    service.cancel(job_id)
+    try:
+        _deliver(service.wait(job_id, timeout=30), options, problem)
+    except NoResult as error:
+        note(error.message)
+    return codes.INTERRUPTED
+
+
+def _deliver(
+    found: Result, options: argparse.Namespace, problem: Mapping[str, Any] | None = None
+) -> int:
+    return deliver(
+        found, as_json=options.json, output=options.output, report=options.report, problem=problem
+    )
+
+
+def _show(job: Job, options: argparse.Namespace) -> None:
+    if options.json:
+        show_json(job.document)
+    else:
+        print(job.id)
+        note(f"{job.name}: {job.status}")

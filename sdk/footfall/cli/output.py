@@ -1,0 +1,98 @@
+"""What commands print: JSON alone on stdout for programs, words for people."""
+
+import json
+import sys
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from footfall.cli import codes
+from footfall.documents import find
+from footfall.errors import BadFile, BadProblem, FootfallError, Issue
+from footfall.report import render
+from footfall.result import Result
+from footfall.summary import in_words
+
+_SHOWN = 76  # characters of a long expression around the caret
+
+
+def show_json(document: Any) -> None:
+    """One JSON document on stdout."""
+    json.dump(document, sys.stdout, allow_nan=False, ensure_ascii=False)
+    sys.stdout.write("\n")
+
+
+def note(words: str) -> None:
+    """A line for a person, on stderr."""
+    print(words, file=sys.stderr)
+
+
+def deliver(
+    result: Result,
+    *,
+    as_json: bool,
+    output: str | None = None,
+    report: str | None = None,
+    problem: Mapping[str, Any] | None = None,
+) -> int:
+    """Write the files asked for, print the result, and give the exit code of its status."""
+    if output:
+        write(output, json.dumps(result.document, allow_nan=False))
+        note(f"result written to {output}")
+    if report:
+        write(report, render(result.document, problem))
+        note(f"report written to {report}")
+    if as_json:
+        show_json(result.document)
+    else:
+        print(in_words(result.document))
+    return codes.of_status(result.status)
+
+
+def write(path: str, text: str) -> None:
+    """A text file, its folder made if need be. Raises ``BadFile``."""
+    target = Path(path)
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise BadFile(f"{path} cannot be written: {error.strerror}.") from error
+
+
+def complain(error: FootfallError, *, as_json: bool) -> None:
+    """An error on stderr: words, or one JSON document for programs."""
+    if not as_json:
+        note(f"error: {error}")
+        return
+    document: dict[str, Any] = {"error": type(error).__name__, "message": error.message}
+    document["hint"] = error.hint
+    if isinstance(error, BadProblem):
+        document["issues"] = [issue_json(issue) for issue in error.issues]
+    note(json.dumps(document))
+
+
+def issue_json(issue: Issue) -> dict[str, Any]:
+    """An issue as JSON values."""
+    return {
+        "pointer": issue.pointer,
+        "column": issue.column,
+        "message": issue.message,
+        "hint": issue.hint,
+    }
+
+
+def explain(issues: Iterable[Issue], document: Mapping[str, Any], name: str) -> str:
+    """Issues for a person: the place, the reason, the user's text with a caret, the mend."""
+    return "\n\n".join(_explained(issue, document, name) for issue in issues)
+
+
+def _explained(issue: Issue, document: Mapping[str, Any], name: str) -> str:
+    lines = [f"{name}: {issue.pointer or '/'}: {issue.message}"]
+    text = find(document, issue.pointer)
+    if isinstance(text, str) and issue.column is not None:
+        start = max(0, issue.column - 1 - _SHOWN // 2)
+        lines.append(f"    {text[start : start + _SHOWN]}")
+        lines.append(f"    {' ' * (issue.column - 1 - start)}^")
+    if issue.hint:
+        lines.append(f"  hint: {issue.hint}")
+    return "\n".join(lines)

@@ -1,0 +1,172 @@
+"""The words of the command line: commands, options, helps with examples."""
+
+import argparse
+from collections.abc import Callable, Mapping
+
+from footfall.cli import gallery, jobs, service, solving
+from footfall.client import DEFAULT_URL
+
+Run = Callable[[argparse.Namespace], int]
+
+_ABOUT = "Trajectory optimization, also through contact, as a service or in this process."
+_START = """start here:
+  footfall examples                    what there is to solve
+  footfall solve FILE                  solve a problem in this process
+  footfall serve                       keep a service running
+  footfall submit FILE --watch         solve through the service
+
+exit codes: 0 done and converged, 3 finished otherwise, 2 bad problem, 1 fault, 130 interrupted"""
+
+
+class _Words:
+    """Collects the commands; each has a run function, a help and an example."""
+
+    def __init__(self, environment: Mapping[str, str]) -> None:
+        self.url = environment.get("FOOTFALL_URL") or DEFAULT_URL
+        self.folder = environment.get("FOOTFALL_DATA") or ".footfall"
+        self.environment = environment
+        self.top = argparse.ArgumentParser(
+            prog="footfall",
+            description=_ABOUT,
+            epilog=_START,
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )
+        self._commands = self.top.add_subparsers(metavar="COMMAND", required=True)
+
+    def command(self, name: str, run: Run, words: str, example: str) -> argparse.ArgumentParser:
+        """A command with the options that all have."""
+        added = self._commands.add_parser(
+            name,
+            help=words,
+            description=words[0].upper() + words[1:] + ".",
+            epilog=f"example:\n  {example}",
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )
+        added.add_argument("--json", action="store_true", help="JSON alone on stdout, for programs")
+        added.set_defaults(run=run, environment=self.environment)
+        return added
+
+    def remote(self, name: str, run: Run, words: str, example: str) -> argparse.ArgumentParser:
+        """A command that talks to a service."""
+        added = self.command(name, run, words, example)
+        help_ = f"where the service is (default: FOOTFALL_URL or {DEFAULT_URL})"
+        added.add_argument("--server", metavar="URL", default=self.url, help=help_)
+        return added
+
+
+def parser(environment: Mapping[str, str]) -> argparse.ArgumentParser:
+    """The whole command line; ``environment`` gives the defaults."""
+    words = _Words(environment)
+    _solving(words)
+    _jobs(words)
+    _service(words)
+    return words.top
+
+
+def _solving(words: _Words) -> None:
+    solve = words.command(
+        "solve",
+        solving.solve,
+        "solve a problem and wait for the result",
+        "footfall solve examples/cart_pole.json --report cart_pole.html",
+    )
+    _problem(solve)
+    _files(solve)
+    through = "solve through this service instead of in this process"
+    solve.add_argument("--server", metavar="URL", help=through)
+    validate = words.command(
+        "validate",
+        solving.validate,
+        "check a problem without solving it",
+        "footfall validate my_problem.json",
+    )
+    _problem(validate)
+    validate.add_argument("--server", metavar="URL", help="let this service check it")
+    examples = words.command(
+        "examples",
+        gallery.examples,
+        "list the gallery, or print one of its problems",
+        "footfall examples cart_pole > my_problem.json",
+    )
+    examples.add_argument("name", nargs="?", help="the example to print")
+    examples.add_argument("--server", metavar="URL", help="the gallery of this service")
+
+
+def _jobs(words: _Words) -> None:
+    submit = words.remote(
+        "submit",
+        jobs.submit,
+        "queue a problem at the service and print the job's id",
+        "footfall submit my_problem.json --watch",
+    )
+    _problem(submit)
+    submit.add_argument("--watch", action="store_true", help="follow it and print the result")
+    watch = words.remote(
+        "watch", jobs.watch, "follow a job to its end and print the result", "footfall watch ID"
+    )
+    watch.add_argument("id", help="the job's id")
+    for command in (submit, watch):
+        _files(command)
+    cancel = words.remote(
+        "cancel", jobs.cancel, "cancel a job; it keeps its best iterate", "footfall cancel ID"
+    )
+    cancel.add_argument("id", help="the job's id")
+    cancel.add_argument("--now", action="store_true", help="kill it without asking first")
+    result = words.remote(
+        "result",
+        jobs.result,
+        "fetch the result of a job",
+        "footfall result ID --json > result.json",
+    )
+    result.add_argument("id", help="the job's id")
+    _files(result)
+
+
+def _service(words: _Words) -> None:
+    serve = words.command(
+        "serve",
+        service.serve,
+        "run a whole service on this machine: queue server, api and workers",
+        "footfall serve --port 8000 --workers 2",
+    )
+    serve.add_argument("--host", default="127.0.0.1", help="the address (default: 127.0.0.1)")
+    serve.add_argument("--port", type=_port, default=8000, help="default: 8000; 0: any free one")
+    serve.add_argument("--workers", type=_count, default=1, help="how many (default: 1)")
+    worker = words.command(
+        "worker",
+        service.worker,
+        "run one more worker for the service of a data folder or of REDIS_URL",
+        "REDIS_URL=redis://queue:6379/0 footfall worker",
+    )
+    worker.add_argument("--name", default="", help="a unique name (default: made up)")
+    for command in (serve, worker):
+        command.add_argument("--data-dir", default=words.folder, help=f"default: {words.folder}")
+    words.remote(
+        "doctor",
+        service.doctor,
+        "look whether all that Footfall needs is here and works",
+        "footfall doctor",
+    )
+
+
+def _problem(command: argparse.ArgumentParser) -> None:
+    command.add_argument("file", metavar="FILE", help="the problem's JSON file, or - for stdin")
+
+
+def _files(command: argparse.ArgumentParser) -> None:
+    command.add_argument("--output", metavar="FILE", help="write the result's JSON here too")
+    command.add_argument("--report", metavar="FILE", help="write the report's HTML here")
+
+
+def _port(text: str) -> int:
+    return _number(text, 65_535)
+
+
+def _count(text: str) -> int:
+    return _number(text, 256)
+
+
+def _number(text: str, top: int) -> int:
+    if not text.isdecimal() or int(text) > top:
+        raise argparse.ArgumentTypeError(f"expected a whole number from 0 to {top}, got {text!r}")
+    return int(text)

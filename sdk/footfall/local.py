@@ -1,0 +1,151 @@
+"""The one door to the server packages: solving in this process, and what a service is made of.
+
+Everything of the server is imported inside functions, and where it is not installed the error
+says what to install.
+"""
+
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
+from pathlib import Path
+from typing import Any
+
+from footfall.documents import Problem
+from footfall.documents import read_problem as read_document
+from footfall.errors import BadProblem, EngineFault, Issue, MissingServer, ServeFailed
+from footfall.result import Result
+from footfall.sse import Event
+
+_SERVER = frozenset({"api", "worker", "solver", "schemas", "store", "examples"})
+
+
+def solve(
+    problem: Problem,
+    *,
+    on_event: Callable[[Event], object] | None = None,
+    should_stop: Callable[[], bool] | None = None,
+) -> Result:
+    """Solve a problem in this process, without a service.
+
+    Parameters
+    ----------
+    problem : dict, str or Path
+        The problem, or the path of a JSON file that holds it.
+    on_event : callable, optional
+        Is called with every stage, NLP iteration and solved mesh.
+    should_stop : callable, optional
+        Is asked at every NLP iteration; true ends the solve with the best iterate.
+
+    Returns
+    -------
+    Result
+        However the mathematics ended; ``result.status`` says how.
+
+    Raises
+    ------
+    BadProblem
+        With every issue of the problem.
+    BadFile, MissingServer, EngineFault
+        See ``footfall.errors``.
+    """
+    document = read_document(problem)
+    with _needs("worker", "solving in this process"), _translated():
+        from schemas.reading import read_problem
+        from solver import solve as engine
+
+        options: dict[str, Any] = {}
+        if on_event is not None:
+            options["on_event"] = lambda event: on_event(_event(event))
+        if should_stop is not None:
+            options["should_stop"] = should_stop
+        solution = engine(read_problem(document), **options)
+    return Result(solution.model_dump(mode="json"))
+
+
+def validate(problem: Problem) -> list[Issue]:
+    """What is wrong with a problem, checked in this process; an empty list: it is fine.
+
+    What only the built model can tell (a NaN at the guess) shows when it is solved.
+    """
+    document = read_document(problem)
+    with _needs("worker", "checking a problem in this process"):
+        from schemas.reading import read_problem
+
+        try:
+            with _translated():
+                read_problem(document)
+        except BadProblem as error:
+            return error.issues
+    return []
+
+
+def examples() -> dict[str, dict[str, Any]]:
+    """The gallery as it is installed here: name -> problem."""
+    with _needs("worker", "the gallery without a service"):
+        import examples as gallery
+
+        return {name: gallery.load(name) for name in gallery.names()}
+
+
+def queue_binary() -> Path:
+    """The binary of the embedded queue server."""
+    with _needs("embedded", "the embedded queue server"), _translated():
+        from store.embedded import binary
+
+        return binary()
+
+
+def queue_server(folder: Path) -> AbstractContextManager[Any]:
+    """The embedded queue server over a data folder, not yet started; it has a ``url``."""
+    with _needs("api,worker,embedded", "serving"):
+        from store.embedded import EmbeddedServer
+
+        return EmbeddedServer(folder)
+
+
+@contextmanager
+def starting() -> Iterator[None]:
+    """Turn the server's own errors while it starts into ours."""
+    with _needs("api,worker,embedded", "serving"), _translated():
+        yield
+
+
+def check_server_packages() -> None:
+    """Raise ``MissingServer`` unless api and worker can be started here."""
+    with _needs("api,worker,embedded", "serving"):
+        import uvicorn  # noqa: F401
+
+        import api.settings  # noqa: F401
+        import worker.settings  # noqa: F401
+
+
+@contextmanager
+def _needs(extras: str, what: str) -> Iterator[None]:
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        missing = (error.name or "?").partition(".")[0]
+        package = "footfall-server" if missing in _SERVER else missing
+        raise MissingServer(
+            f"{what.capitalize()} needs the package {package}, which is not installed.",
+            f"pip install 'footfall-server[{extras}]', or use a service with --server URL.",
+        ) from error
+
+
+@contextmanager
+def _translated() -> Iterator[None]:
+    from schemas import errors
+
+    try:
+        yield
+    except errors.BadProblem as error:
+        issues = [Issue(i.pointer, i.message, i.hint, i.column) for i in error.issues]
+        raise BadProblem(issues) from error
+    except errors.EngineFault as error:
+        raise EngineFault(error.message, error.hint) from error
+    except errors.FootfallError as error:
+        raise ServeFailed(error.message, error.hint) from error
+
+
+def _event(event: Any) -> Event:
+    document = event.model_dump(mode="json")
+    return Event(document["type"], document)

@@ -1,0 +1,186 @@
+"""What is drawn: series over time with their nodes and limits, and the errors of each mesh."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import islice
+from typing import Any
+
+import numpy as np
+
+from footfall.curves import Curve, Curves, Floats
+from footfall.report.limits import Limits
+from footfall.report.scales import Scale, linear, logarithmic, scientific
+
+TOGETHER = 6
+"""Series in one plot: as many as there are colours that are told apart."""
+
+_FINE = 900  # points along one curve, more or less
+_MARKS = 1500  # nodes that are marked in one plot, at the most
+_FAR = 2.5  # a limit that would stretch the axis more than this stays out of the picture
+
+
+@dataclass(frozen=True)
+class Series:
+    """One line: points ``(time, value)``, NaN where it breaks; ``curve`` answers the pointer."""
+
+    label: str
+    style: str
+    time: Floats
+    value: Floats
+    curve: Curve
+    nodes: tuple[Floats, Floats] | None = None
+    limits: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
+class Figure:
+    """One plot over time. ``mark`` is a labelled level across it, ``unit`` that of x."""
+
+    title: str
+    series: list[Series]
+    x: Scale
+    y: Scale
+    mark: tuple[float, str] | None = None
+    notes: list[str] = field(default_factory=list)
+    unit: str = " s"
+
+
+def trajectories(phase: Mapping[str, Any], limits: Limits) -> Iterator[Figure]:
+    """The plots of one phase, group by group."""
+    for group, document in phase["curves"].items():
+        curves = Curves.from_dict(document)
+        nodes = phase["groups"].get(group)
+        names = iter(curves)
+        while chunk := list(islice(names, TOGETHER)):
+            yield _trajectory(group, {name: curves[name] for name in chunk}, nodes, limits)
+
+
+def mesh_errors(refinement: Mapping[str, Any]) -> Figure | None:
+    """The error of each segment, a step line for each mesh; None where no error is known."""
+    meshes = [m for m in refinement["iterations"] if any(e for e in m["errors"])]
+    if not meshes:
+        return None
+    tolerance = refinement["tolerance"]
+    series = [
+        _steps(mesh, _age(position, len(meshes)), refinement["iterations"].index(mesh) + 1)
+        for position, mesh in enumerate(meshes)
+    ]
+    values = [error for mesh in meshes for error in mesh["errors"] if error]
+    ends = [time for mesh in meshes for span in mesh["spans"] for time in span]
+    return Figure(
+        title="Error of each segment",
+        series=series,
+        x=_time_axis(min(ends), max(ends)),
+        y=logarithmic([*values, *([tolerance] if tolerance else [])]),
+        mark=(tolerance, f"tolerance {scientific(tolerance, 3)}") if tolerance else None,
+    )
+
+
+def convergence(refinement: Mapping[str, Any]) -> list[Figure]:
+    """Largest error and objective from mesh to mesh; nothing for a single mesh."""
+    meshes = refinement["iterations"]
+    if len(meshes) < 2:
+        return []
+    count = np.arange(1.0, len(meshes) + 1)
+    errors = [mesh["max_error"] for mesh in meshes]
+    values = [mesh["objective"] for mesh in meshes]
+    tolerance = refinement["tolerance"]
+    levels = [*[e for e in errors if e], *([tolerance] if tolerance else [])]
+    mark = (tolerance, f"tolerance {scientific(tolerance, 3)}") if tolerance else None
+    axis = Scale(0.7, len(meshes) + 0.3, whole=True)
+    error = _points("largest error", "s0", count, errors)
+    objective = _points("objective", "s1", count, values)
+    height = linear([v for v in values if v is not None], 0.15)
+    return [
+        Figure("Largest error", [error], axis, logarithmic(levels), mark, unit=""),
+        Figure("Objective", [objective], axis, height, unit=""),
+    ]
+
+
+def _trajectory(
+    group: str, curves: Mapping[str, Curve], nodes: Mapping[str, Any] | None, limits: Limits
+) -> Figure:
+    breaks = next(iter(curves.values())).breaks
+    times = _drawing_times(breaks)
+    drawn = {name: curve(times) for name, curve in curves.items()}
+    extent = linear(float(v) for values in drawn.values() for v in (values.min(), values.max()))
+    every = _stride(nodes)
+    series, notes = [], [f"every {every}th node marked"] if every > 1 else []
+    for index, (name, curve) in enumerate(curves.items()):
+        near = tuple(level for level in limits.get(name, ()) if _is_near(level, extent))
+        if len(near) < len(limits.get(name, ())):
+            notes.append(f"a bound of {name} lies outside of the picture")
+        marked = _marked(name, nodes, every)
+        series.append(Series(name, f"s{index}", *_with_jumps(curve, times), curve, marked, near))
+    levels = [level for item in series for level in item.limits]
+    ends = [extent.low, extent.high]
+    y = linear([*ends, *levels], 0.04) if levels else extent
+    return Figure(group.capitalize(), series, _time_axis(breaks[0], breaks[-1]), y, notes=notes)
+
+
+def _drawing_times(breaks: Floats) -> Floats:
+    segments = len(breaks) - 1
+    if segments > _FINE:
+        return np.linspace(breaks[0], breaks[-1], 2 * _FINE)
+    inside = max(2, math.ceil(_FINE / segments / 2))
+    share = np.arange(inside) / inside
+    return np.append((breaks[:-1, None] + np.diff(breaks)[:, None] * share).ravel(), breaks[-1])
+
+
+def _with_jumps(curve: Curve, times: Floats) -> tuple[Floats, Floats]:
+    """The line's points, with a break wherever the curve jumps."""
+    inner = curve.breaks[1:-1]
+    before, after = curve(inner, side="left"), curve(inner)
+    height = np.ptp(curve(times)) if len(times) else 0.0
+    jumps = np.abs(after - before) > 1e-3 * max(height, 1e-12)
+    where = inner[jumps]
+    time = np.concatenate([times, where, where])
+    value = np.concatenate([curve(times), before[jumps], np.full(len(where), np.nan)])
+    order = np.lexsort(
+        (np.r_[np.full(len(times), 2), np.zeros(len(where)), np.ones(len(where))], time)
+    )
+    return time[order], value[order]
+
+
+def _stride(nodes: Mapping[str, Any] | None) -> int:
+    return math.ceil(len(nodes["time"]) / _MARKS) if nodes else 1
+
+
+def _marked(name: str, nodes: Mapping[str, Any] | None, every: int) -> tuple[Floats, Floats] | None:
+    if nodes is None or name not in nodes["values"]:
+        return None
+    time = np.asarray(nodes["time"], dtype=float)
+    value = np.array(nodes["values"][name], dtype=float)
+    return time[::every], value[::every]
+
+
+def _is_near(level: float, extent: Scale) -> bool:
+    low, high = min(level, extent.low), max(level, extent.high)
+    return high - low <= _FAR * (extent.high - extent.low)
+
+
+def _steps(mesh: Mapping[str, Any], style: str, number: int) -> Series:
+    spans = np.asarray(mesh["spans"], dtype=float).reshape(-1, 2)
+    errors = np.array(mesh["errors"], dtype=float)
+    time = np.column_stack([spans, spans[:, 1]]).ravel()
+    gaps = np.r_[spans[1:, 0] != spans[:-1, 1], False]
+    after = np.where(gaps, np.nan, errors)
+    value = np.column_stack([errors, errors, after]).ravel()
+    curve = Curve(np.append(spans[:, 0], spans[-1, 1]), errors[:, None])
+    return Series(f"mesh {number}, {len(spans)} segments", style, time, value, curve)
+
+
+def _points(label: str, style: str, count: Floats, raw: Sequence[float | None]) -> Series:
+    values = np.array(raw, dtype=float)
+    still = Curve([count[0], count[-1]], [[0.0]])
+    return Series(label, style, count, values, still, (count, values))
+
+
+def _age(position: int, count: int) -> str:
+    """Old meshes are pale, the last one is strong: five shades."""
+    return f"m{4 - min(4, count - 1 - position)}"
+
+
+def _time_axis(start: float, end: float) -> Scale:
+    return Scale(float(start), float(end) if end > start else float(start) + 1.0)

@@ -1,0 +1,213 @@
+"""The page: what is said first, the plots, the diagnostics, and how to compute it again."""
+
+import json
+from base64 import b64encode
+from collections.abc import Mapping
+from hashlib import sha256
+from typing import Any
+
+from footfall.report.drawing import pointer_data, script_json
+from footfall.report.figures import Figure, convergence, mesh_errors, trajectories
+from footfall.report.limits import limits_of
+from footfall.report.markup import Markup, asset, el, join, void
+from footfall.report.plots import plot
+from footfall.report.scales import scientific
+from footfall.report.tables import checks, meshes, pairs, residuals
+from footfall.summary import VERDICTS, plural, words
+
+_STANDING = {"converged": "good", "acceptable": "fair", "cancelled": "quiet"}
+_PARTS = ("build", "solve", "refine", "certify")
+
+
+def render(result: Mapping[str, Any], problem: Mapping[str, Any] | None = None) -> str:
+    """One self-contained HTML page about a result.
+
+    Parameters
+    ----------
+    result : dict
+        A result's JSON (``schemas.results.Solution``).
+    problem : dict, optional
+        The problem; its numeric bounds are drawn and it is folded into the page.
+
+    Returns
+    -------
+    str
+        HTML that loads nothing and runs no script but its own.
+    """
+    figures: list[Figure] = []
+    body = el(
+        "main",
+        _header(result),
+        _remarks(result),
+        *(_phase(result, phase, problem, figures) for phase in result["phases"]),
+        _certificate(result["certificate"]),
+        _mesh(result["mesh_refinement"], figures),
+        _solver(result),
+        _again(result, problem),
+    )
+    data = script_json([pointer_data(figure) for figure in figures])
+    return _document(result["name"], body, data)
+
+
+def _document(title: str, body: Markup, data: Markup) -> str:
+    style, script = asset("figure.css") + asset("page.css"), asset("page.js")
+    policy = (
+        f"default-src 'none'; style-src {_hash(style)}; script-src {_hash(script)}; "
+        "img-src data:; base-uri 'none'; form-action 'none'"
+    )
+    head = el(
+        "head",
+        void("meta", charset="utf-8"),
+        void("meta", http_equiv="Content-Security-Policy", content=policy),
+        void("meta", name="viewport", content="width=device-width, initial-scale=1"),
+        void("meta", name="color-scheme", content="light dark"),
+        void("link", rel="icon", href="data:,"),
+        el("title", f"{title} \N{MIDDLE DOT} Footfall"),
+        el("style", Markup(style)),
+    )
+    scripts = join(
+        el("script", data, type="application/json", id="figures"), el("script", Markup(script))
+    )
+    return f"<!doctype html>\n{el('html', head, el('body', body, scripts), lang='en')}\n"
+
+
+def _header(result: Mapping[str, Any]) -> Markup:
+    meshes_ = result["mesh_refinement"]["iterations"]
+    last = meshes_[-1] if meshes_ else {}
+    verdict = result["certificate"]["verdict"]
+    facts = {
+        "objective": scientific(result["objective"], 10),
+        "largest error": scientific(last.get("max_error"), 3),
+        "mesh": plural(last["segments"], "segment") if last else "\N{EN DASH}",
+        "certificate": VERDICTS[verdict],
+        "time": f"{result['timing']['total']:.2f} s",
+    }
+    return el(
+        "header",
+        el("p", "Footfall report", class_="kicker"),
+        el("h1", result["name"]),
+        el(
+            "p",
+            el("span", words(result["status"]), class_=f"badge {_standing(result)}"),
+            el("span", result["message"]),
+            class_="status",
+        ),
+        pairs(facts),
+    )
+
+
+def _standing(result: Mapping[str, Any]) -> str:
+    return _STANDING.get(result["status"], "bad")
+
+
+def _remarks(result: Mapping[str, Any]) -> Markup | None:
+    remarks = [
+        *(el("li", text, class_="warning") for text in result.get("warnings", [])),
+        *(el("li", text, class_="advice") for text in result.get("advice", [])),
+    ]
+    return el("ul", *remarks, class_="remarks") if remarks else None
+
+
+def _phase(
+    result: Mapping[str, Any],
+    phase: Mapping[str, Any],
+    problem: Mapping[str, Any] | None,
+    figures: list[Figure],
+) -> Markup:
+    found = list(trajectories(phase, limits_of(problem, phase["name"])))
+    title = "Trajectory" if len(result["phases"]) == 1 else f"Phase {phase['name']}"
+    plots = [
+        _numbered(figure, figures, "tall" if i == 0 else "low") for i, figure in enumerate(found)
+    ]
+    start, end = phase["knots"][0], phase["knots"][-1]
+    size = plural(len(phase["knots"]) - 1, "segment")
+    span = f"{phase['name']}: {scientific(start, 6)} to {scientific(end, 6)} s, {size}"
+    sums = {name: scientific(value, 10) for name, value in phase.get("integrals", {}).items()}
+    integrals = join(el("h3", "Integrals"), pairs(sums)) if sums else None
+    return _section(title, el("p", span, class_="lead"), *plots, integrals)
+
+
+def _certificate(certificate: Mapping[str, Any]) -> Markup:
+    verdict = certificate["verdict"]
+    kind = {"certified": "good", "not_certified": "bad"}.get(verdict, "quiet")
+    badge = el("span", VERDICTS[verdict], class_=f"badge {kind}")
+    return _section(
+        "Certificate",
+        el("p", badge, el("span", certificate["note"]), class_="status"),
+        checks(certificate),
+    )
+
+
+def _mesh(refinement: Mapping[str, Any], figures: list[Figure]) -> Markup:
+    errors = mesh_errors(refinement)
+    history = [plot(figure, None, "low") for figure in convergence(refinement)]
+    return _section(
+        "Mesh refinement",
+        el("p", _mesh_words(refinement), class_="lead"),
+        _numbered(errors, figures, "tall") if errors else None,
+        el("div", *history, class_="pair") if history else None,
+        meshes(refinement),
+    )
+
+
+def _mesh_words(refinement: Mapping[str, Any]) -> str:
+    if refinement["tolerance"] is None:
+        return "Refinement was off: one mesh, its error estimated."
+    end = "is met" if refinement["converged"] else "is not met"
+    count = plural(len(refinement["iterations"]), "mesh").replace("meshs", "meshes")
+    return f"The tolerance of {scientific(refinement['tolerance'], 3)} {end} after {count}."
+
+
+def _solver(result: Mapping[str, Any]) -> Markup:
+    solver, timing = result["solver"], result["timing"]
+    facts = {
+        "backend": solver["backend"],
+        "its own status": solver["status"],
+        "iterations on the last mesh": solver["iterations"],
+        "variables": solver["variables"],
+        "constraints": solver["constraints"],
+    }
+    ranked = solver["residuals"]
+    worst = join(el("h3", "Largest residuals"), residuals(ranked)) if ranked else None
+    return _section("Solver", pairs(facts), el("h3", "Time"), _timing(timing), worst)
+
+
+def _timing(timing: Mapping[str, float]) -> Markup:
+    whole = max(sum(timing[part] for part in _PARTS), 1e-9)
+    bars, start = [], 0.0
+    for index, part in enumerate(_PARTS):
+        share = 100 * timing[part] / whole
+        box = {"x": f"{start:.3f}%", "width": f"{share:.3f}%", "height": "100%"}
+        bars.append(el("rect", el("title", part), class_=f"t{index}", **box))
+        start += share
+    bar = el("svg", *bars, class_="bar", height=10, role="img", aria_label="share of each part")
+    return join(bar, pairs({part: f"{timing[part]:.3f} s" for part in (*_PARTS, "total")}))
+
+
+def _again(result: Mapping[str, Any], problem: Mapping[str, Any] | None) -> Markup:
+    record = result["reproduce"]
+    facts = {"spec sha256": el("code", record["spec_sha256"])}
+    facts |= {name: el("span", version) for name, version in record["versions"].items()}
+    if record["seed"] is not None:
+        facts["seed"] = el("span", record["seed"])
+    how = el(
+        "p",
+        "Save the problem below as problem.json, then: ",
+        el("code", "footfall solve problem.json"),
+    )
+    text = json.dumps(problem, indent=2, ensure_ascii=False) if problem is not None else ""
+    folded = el("details", el("summary", "The problem"), el("pre", text)) if text else None
+    return _section("Reproduce", how if text else None, pairs(facts), folded)
+
+
+def _numbered(figure: Figure, figures: list[Figure], size: str) -> Markup:
+    figures.append(figure)
+    return plot(figure, len(figures) - 1, size)
+
+
+def _section(title: str, *children: Markup | None) -> Markup:
+    return el("section", el("h2", title), *children)
+
+
+def _hash(text: str) -> str:
+    return f"'sha256-{b64encode(sha256(text.encode()).digest()).decode()}'"

@@ -1,0 +1,84 @@
+"""The figure of a result as one SVG file, for a README or a slide."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from footfall.report.drawing import frame
+from footfall.report.figures import Figure, mesh_errors, trajectories
+from footfall.report.limits import limits_of
+from footfall.report.markup import Markup, asset, el
+from footfall.report.scales import scientific
+from footfall.summary import VERDICTS, plural, words
+
+_WIDTH, _LEFT, _RIGHT = 960, 76, 36
+_HEAD, _GAP = 116, 74  # above the first frame, and between two frames
+
+
+def render_svg(
+    result: Mapping[str, Any], problem: Mapping[str, Any] | None = None, errors: bool = True
+) -> str:
+    """The trajectories and the mesh errors of a result as one standalone SVG.
+
+    It follows the reader's light or dark scheme and loads nothing. Parameters as ``render``;
+    ``errors`` false leaves the mesh errors out.
+    """
+    figures = [
+        figure
+        for phase in result["phases"]
+        for figure in trajectories(phase, limits_of(problem, phase["name"]))
+    ]
+    steps = mesh_errors(result["mesh_refinement"]) if errors else None
+    heights = [220 if index == 0 else 140 for index in range(len(figures))] + [150] * bool(steps)
+    figures += [steps] if steps else []
+    parts, top = [], _HEAD
+    for figure, height in zip(figures, heights, strict=True):
+        parts += [*_legend(figure, top - 18), _frame(figure, top, height)]
+        top += height + _GAP
+    total = top - _GAP + 52
+    return el(
+        "svg",
+        el("title", f"{result['name']}: trajectory and mesh errors"),
+        el("style", Markup(asset("figure.css"))),
+        el("rect", class_="card", width=_WIDTH - 1, height=total - 1, x=0.5, y=0.5, rx=10),
+        *_heading(result),
+        *parts,
+        xmlns="http://www.w3.org/2000/svg",
+        viewBox=f"0 0 {_WIDTH} {total}",
+        width=_WIDTH,
+        height=total,
+        role="img",
+    )
+
+
+def _frame(figure: Figure, top: int, height: int) -> Markup:
+    across = _WIDTH - _LEFT - _RIGHT
+    return frame(
+        figure, (10, 4 if height < 200 else 6), x=_LEFT, y=top, width=across, height=height
+    )
+
+
+def _heading(result: Mapping[str, Any]) -> list[Markup]:
+    meshes = result["mesh_refinement"]["iterations"]
+    parts = [words(result["status"]), f"objective {scientific(result['objective'], 8)}"]
+    if meshes:
+        parts.append(plural(meshes[-1]["segments"], "segment"))
+        parts.append(f"largest error {scientific(meshes[-1]['max_error'], 2)}")
+    parts.append(VERDICTS[result["certificate"]["verdict"]])
+    return [
+        el("text", result["name"], class_="heading", x=_LEFT, y=40),
+        el("text", " \N{MIDDLE DOT} ".join(parts), class_="tick start", x=_LEFT, y=62),
+    ]
+
+
+def _legend(figure: Figure, y: int) -> list[Markup]:
+    """The title at the left; the keys from the right end, by estimated width."""
+    parts = [el("text", figure.title, class_="caption", x=_LEFT, y=y)]
+    x = float(_WIDTH - _RIGHT)
+    for item in reversed(figure.series):
+        x -= 6.6 * len(item.label)
+        parts.append(el("text", item.label, class_="tick start", x=f"{x:.1f}", y=y))
+        x -= 24
+        line = el("line", class_="curve", x1=f"{x:.1f}", x2=f"{x + 18:.1f}", y1=y - 4, y2=y - 4)
+        parts.append(el("g", line, class_=f"series {item.style}"))
+        x -= 18
+    return parts

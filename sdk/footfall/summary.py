@@ -1,0 +1,141 @@
+"""A result in plain text: a summary, the mesh table, the certificate, the trajectory."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import islice
+from typing import Any
+
+import numpy as np
+
+from footfall.curves import Curves
+
+_MOST_COLUMNS = 13  # of a table of numbers that still fits on a wide terminal
+
+VERDICTS = {
+    "certified": "certified",
+    "not_certified": "NOT certified",
+    "not_checked": "not checked",
+}
+
+
+def in_words(result: Mapping[str, Any]) -> str:
+    """All that a person reads on a terminal: summary, trajectories, meshes, certificate."""
+    parts = [
+        ("", summarize(result)),
+        *(
+            (f"Trajectory of {phase['name']} (t in s)\n", trajectory_table(phase))
+            for phase in result["phases"]
+        ),
+        ("Mesh refinement\n", mesh_table(result)),
+        ("Certificate\n", certificate_table(result)),
+    ]
+    return "\n\n".join(head + text for head, text in parts)
+
+
+def summarize(result: Mapping[str, Any]) -> str:
+    """Status, objective, mesh, certificate, and what stands out."""
+    mesh = result["mesh_refinement"]["iterations"]
+    solver, timing = result["solver"], result["timing"]
+    lines = [
+        f"{result['name']}: {words(result['status'])}",
+        f"  {result['message']}",
+        f"  objective    {number(result['objective'], 10)}",
+        f"  certificate  {VERDICTS[result['certificate']['verdict']]}",
+        f"  solver       {solver['backend']}, {solver['iterations']} iterations on the last mesh",
+        f"  time         {timing['total']:.2f} s",
+    ]
+    if mesh:
+        last = mesh[-1]
+        error = f"largest error {number(last['max_error'], 3)}"
+        lines.insert(4, f"  mesh         {plural(last['segments'], 'segment')}, {error}")
+    if solver["residuals"] and result["status"] != "converged":
+        worst = solver["residuals"][0]
+        lines.append(f"  worst        {worst['name']}: {number(worst['value'], 3)}{place(worst)}")
+    lines += [f"  warning: {text}" for text in result.get("warnings", [])]
+    lines += [f"  advice: {text}" for text in result.get("advice", [])]
+    return "\n".join(lines)
+
+
+def mesh_table(result: Mapping[str, Any]) -> str:
+    """One line for each mesh of the refinement."""
+    rows = [
+        [
+            str(index + 1),
+            str(mesh["segments"]),
+            number(mesh["max_error"], 3),
+            number(mesh["objective"], 10),
+            str(mesh["nlp_iterations"]),
+            f"{mesh['seconds']:.3f}",
+        ]
+        for index, mesh in enumerate(result["mesh_refinement"]["iterations"])
+    ]
+    return table(["mesh", "segments", "max error", "objective", "iterations", "seconds"], rows)
+
+
+def certificate_table(result: Mapping[str, Any]) -> str:
+    """One line for each check of the certificate, and the verdict."""
+    certificate = result["certificate"]
+    rows = [
+        [check["name"], number(check["value"], 3), number(check["tolerance"], 3), judgement(check)]
+        for check in certificate["checks"]
+    ]
+    head = table(["check", "value", "tolerance", "judgement"], rows)
+    return f"{head}\nverdict: {VERDICTS[certificate['verdict']]}\n{certificate['note']}"
+
+
+def trajectory_table(phase: Mapping[str, Any], count: int = 11) -> str:
+    """States and controls of one phase at ``count`` times, evenly over it."""
+    times = np.linspace(phase["knots"][0], phase["knots"][-1], count)
+    columns = {"t": times}
+    for group in ("states", "controls"):
+        if group in phase["curves"]:
+            columns |= Curves.from_dict(phase["curves"][group]).sample(times)
+    left_out = list(columns)[_MOST_COLUMNS:]
+    columns = dict(islice(columns.items(), _MOST_COLUMNS))
+    rows = [
+        [f"{round(value, 4) + 0.0:.4f}" for value in row]
+        for row in zip(*columns.values(), strict=True)
+    ]
+    rest = f"\nnot shown: {', '.join(left_out)}" if left_out else ""
+    return table(list(columns), rows) + rest
+
+
+def table(head: Sequence[str], rows: Iterable[Sequence[str]], left: int = 1) -> str:
+    """Columns under their heads: the first ``left`` of them flush left, the others right."""
+    lines = [list(head), *map(list, rows)]
+    widths = [max(len(line[i]) for line in lines) for i in range(len(head))]
+    return "\n".join(
+        "  ".join(
+            cell.ljust(width) if i < left else cell.rjust(width)
+            for i, (cell, width) in enumerate(zip(line, widths, strict=True))
+        ).rstrip()
+        for line in lines
+    )
+
+
+def judgement(check: Mapping[str, Any]) -> str:
+    """What a check says: passed, failed, or only reported."""
+    if not check["judged"]:
+        return "reported"
+    return "passed" if check["passed"] else "FAILED"
+
+
+def place(residual: Mapping[str, Any]) -> str:
+    """Where a residual sits, in words: phase and time, as far as there are any."""
+    phase = f" in {residual['phase']}" if residual.get("phase") else ""
+    time = f" at t = {residual['time']:.4g} s" if residual.get("time") is not None else ""
+    return phase + time
+
+
+def number(value: float | None, digits: int) -> str:
+    """A number with ``digits`` significant digits; a dash for none."""
+    return "-" if value is None else f"{value:.{digits}g}"
+
+
+def plural(count: int, noun: str) -> str:
+    """``1 segment``, ``2 segments``."""
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+
+
+def words(status: str) -> str:
+    """A status as words: ``locally_infeasible`` is "locally infeasible"."""
+    return status.replace("_", " ")

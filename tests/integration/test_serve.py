@@ -1,0 +1,155 @@
+"""``footfall serve`` as a person runs it: one process, the whole service, a clean end."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import httpx
+import numpy as np
+import pytest
+
+import examples
+from footfall import Client, Event
+from footfall.errors import BadProblem, UnknownJob
+from tests.support.service import wait_until
+
+
+@contextmanager
+def serving(folder: Path, *options: str) -> Iterator[tuple[str, subprocess.Popen[str]]]:
+    """The URL and the process of ``footfall serve`` on a free port."""
+    command = [sys.executable, "-m", "footfall", "serve", "--port", "0", "--json"]
+    with subprocess.Popen(
+        [*command, "--data-dir", str(folder), *options],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as process:
+        try:
+            assert process.stdout is not None
+            yield json.loads(process.stdout.readline())["url"], process
+        finally:
+            process.send_signal(signal.SIGTERM)
+            process.wait(15)
+
+
+def children(pid: int) -> list[int]:
+    return [int(p) for p in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
+
+
+def command_of(pid: int) -> str:
+    return Path(f"/proc/{pid}/cmdline").read_bytes().replace(b"\0", b" ").decode()
+
+
+def gone(pid: int) -> bool:
+    return not Path(f"/proc/{pid}").exists()
+
+
+@pytest.fixture(scope="module")
+def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, int]]:
+    with serving(tmp_path_factory.mktemp("serve")) as (url, process):
+        yield url, process.pid
+
+
+@pytest.fixture
+def client(service: tuple[str, int]) -> Iterator[Client]:
+    with Client(service[0]) as opened:
+        yield opened
+
+
+def slow_problem() -> dict[str, Any]:
+    problem = examples.load("cart_pole") | {"refinement": None}
+    problem["method"] = {"kind": "trapezoidal", "segments": 5000}
+    return problem | {"solver": {"tolerance": 1.1e-14}}
+
+
+def test_the_cart_pole_goes_all_the_way(client: Client) -> None:
+    job = client.submit(examples.load("cart_pole"))
+    events: list[Event] = []
+    result = client.wait(job.id, timeout=60, on_event=events.append)
+    assert result.converged
+    assert result.objective == pytest.approx(58.80767, abs=1e-4)
+    assert [e.data["segments"] for e in events if e.type == "mesh"] == [
+        mesh["segments"] for mesh in result.mesh
+    ]
+    assert events[-1].terminal
+    sampled = client.trajectory(job.id, samples=11)
+    times = sampled["swing_up/time"]
+    np.testing.assert_allclose(sampled["swing_up/states/q1"], result["q1"](times), atol=1e-12)
+    assert "cart-pole swing-up" in client.report(job.id)
+    assert job.id in {known.id for known in client.jobs()}
+    client.delete(job.id)
+    with pytest.raises(UnknownJob):
+        client.job(job.id)
+
+
+def test_the_gallery_and_bad_problems(client: Client) -> None:
+    assert "cart_pole" in {entry["name"] for entry in client.examples()}
+    assert client.validate(client.example("cart_pole")) == []
+    problem = examples.load("cart_pole") | {"objective": {"minimize": "efort"}}
+    (issue,) = client.validate(problem)
+    assert (issue.pointer, issue.column) == ("/objective/minimize", 1)
+    with pytest.raises(BadProblem, match="effort"):
+        client.submit(problem)
+
+
+def test_a_cancelled_job_keeps_its_best_iterate(client: Client) -> None:
+    job = client.submit(slow_problem())
+    for event in client.events(job.id, timeout=60):
+        if event.type == "nlp_iteration":
+            client.cancel(job.id)
+    assert client.job(job.id).status == "cancelled"
+    assert client.wait(job.id, timeout=10).status == "cancelled"
+
+
+def test_ctrl_c_on_the_command_cancels_the_job(service: tuple[str, int], tmp_path: Path) -> None:
+    path = tmp_path / "slow.json"
+    path.write_text(json.dumps(slow_problem()))
+    command = [sys.executable, "-m", "footfall", "solve", str(path), "--json"]
+    with subprocess.Popen(
+        [*command, "--server", service[0]],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as process:
+        assert process.stderr is not None
+        while "iteration" not in process.stderr.readline():
+            assert process.poll() is None
+        process.send_signal(signal.SIGINT)
+        out, _ = process.communicate(timeout=30)
+    assert process.returncode == 130
+    assert json.loads(out)["status"] == "cancelled"
+
+
+def test_a_dead_worker_is_started_again(service: tuple[str, int], client: Client) -> None:
+    (worker,) = [pid for pid in children(service[1]) if "-m worker" in command_of(pid)]
+    os.kill(worker, signal.SIGKILL)
+    job = client.submit(examples.load("block_min_force"))
+    assert client.wait(job.id, timeout=60).converged
+
+
+def test_jobs_outlive_the_service_and_nothing_else_does(tmp_path: Path) -> None:
+    with serving(tmp_path) as (url, process), Client(url) as client:
+        job = client.submit(examples.load("block_min_force"))
+        client.wait(job.id, timeout=60)
+        parts = children(process.pid)
+        assert len(parts) == 3
+    assert process.returncode == 0
+    assert all(gone(pid) for pid in parts)
+    with serving(tmp_path, "--workers", "0") as (url, _), Client(url) as client:
+        assert client.result(job.id).converged
+
+
+def test_the_parts_die_with_a_killed_service(tmp_path: Path) -> None:
+    with serving(tmp_path) as (url, process):
+        parts = children(process.pid)
+        process.kill()
+        process.wait(10)
+        wait_until(lambda: all(gone(pid) for pid in parts), 15, "the parts have ended")
+        with pytest.raises(httpx.TransportError):
+            httpx.get(f"{url}/livez", trust_env=False)
