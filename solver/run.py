@@ -23,11 +23,14 @@ class Run:
     should_stop: Callable[[], bool]
     started: float = field(default_factory=time.monotonic)
     spent: dict[Stage, float] = field(default_factory=dict)
+    current: Stage | None = None
 
     @contextmanager
     def stage(self, name: Stage) -> Iterator[None]:
-        """Announce and time one stage of the pipeline."""
-        self.on_event(StageStarted(stage=name))
+        """Announce (once where it goes on) and time one stage of the pipeline."""
+        if name != self.current:
+            self.on_event(StageStarted(stage=name))
+        self.current = name
         began = time.monotonic()
         try:
             yield

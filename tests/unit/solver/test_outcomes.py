@@ -87,7 +87,7 @@ def test_a_stop_on_a_later_mesh_keeps_the_solved_one() -> None:
 
 def test_an_exception_of_a_listener_is_not_swallowed() -> None:
     def fail(event: EngineEvent) -> None:
-        if isinstance(event, NlpIteration):
+        if event.type == "nlp_iteration":
             raise LookupError("the listener broke")
 
     with pytest.raises(LookupError, match="the listener broke"):
@@ -192,7 +192,7 @@ def test_the_stages_are_told_in_order() -> None:
             stages.append(event.stage)
 
     solved(block(refinement=None), on_event=note)
-    assert stages == ["build", "build", "solve", "refine", "certify"]
+    assert stages == ["build", "solve", "refine", "certify"]
 
 
 def test_snapshots_are_unchecked_solutions() -> None:

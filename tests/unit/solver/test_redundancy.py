@@ -20,11 +20,10 @@ def test_a_value_that_others_imply_is_dropped() -> None:
     assert [line for line in solution.warnings if "dropped" in line]
 
 
-def test_a_nonlinear_copy_is_found() -> None:
-    """Not the same row, but the same set: its slope is parallel wherever it holds... and nowhere
-    else, so it is no combination of the others off the solution and is kept."""
+def test_a_row_over_fixed_values_only_is_dropped() -> None:
     solution = solved(with_boundary("initial.v^2", 0))
     assert solution.status is SolutionStatus.CONVERGED
+    assert "'boundary span' follows from the other equalities and was dropped." in solution.warnings
 
 
 def test_a_constant_state_fixed_at_both_ends() -> None:

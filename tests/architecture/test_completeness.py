@@ -1,0 +1,34 @@
+"""Schema, registry and documents name the same things; the engine names no robot."""
+
+import re
+
+from schemas.methods import METHODS
+from solver.transcriptions import TRANSCRIPTIONS
+from tests.architecture.files import ROOT, modules, tracked
+
+
+def kinds() -> set[str]:
+    return {method.model_fields["kind"].annotation.__args__[0] for method in METHODS}  # type: ignore[union-attr]
+
+
+def test_every_method_of_the_schema_has_a_transcription() -> None:
+    assert set(TRANSCRIPTIONS) == kinds()
+
+
+def test_every_method_is_documented() -> None:
+    text = "\n".join(path.read_text() for path in tracked() if path.parent == ROOT / "docs")
+    assert not {kind for kind in kinds() if f"`{kind}`" not in text}
+
+
+def test_the_engine_knows_no_robot() -> None:
+    robots = re.compile(
+        r"cart.?pole|pendulum|quadrotor|biped|flamingo|hopper|gripper|finger|bryson|robot",
+        re.IGNORECASE,
+    )
+    named = [
+        f"{path.relative_to(ROOT)}:{number} {line.strip()}"
+        for path in modules("solver")
+        for number, line in enumerate(path.read_text().splitlines(), 1)
+        if robots.search(line)
+    ]
+    assert not named
