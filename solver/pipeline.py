@@ -7,16 +7,16 @@ from collections.abc import Callable
 from schemas.events import EngineEvent, MeshSolved
 from schemas.problem import Problem
 from schemas.results import Solution
-from solver.attempt import Attempt, Start, attempt
-from solver.certificate import certify
+from solver.certificate import CHECKS, JUDGED, certify
 from solver.mesh import Mesh
 from solver.model import build_model
 from solver.refinement.subdivide import refine
 from solver.run import Run
 from solver.solution.conclude import choose, conclude, snapshot
+from solver.solve_mesh import SolvedMesh, Start, solve_mesh
 from solver.trajectory import initial_guess
+from solver.transcribe import finite
 from solver.transcriptions import make_transcription
-from solver.transcriptions.extract import finite
 
 
 def _ignore(_: object) -> None:
@@ -48,7 +48,8 @@ def solve(
     should_stop
         Asked at every NLP iteration; true ends the solve with the best iterate.
     on_snapshot
-        Called with an uncertified solution after each mesh, so that a killed solve leaves one.
+        Called with an uncertified solution after each mesh and, in long solves, about every
+        second, so that a killed solve leaves one.
 
     Returns
     -------
@@ -68,21 +69,26 @@ def solve(
         meshes = [Mesh.uniform(problem.method.segments) for _ in model.phases]
         guesses = [initial_guess(phase, problem.guess) for phase in model.phases]
 
-    attempts: list[Attempt] = []
+    solved: list[SolvedMesh] = []
+
+    def publish(*unfinished: SolvedMesh) -> None:
+        on_snapshot(snapshot(problem, [*solved, *unfinished], run))
+
     start: Start | None = Start(0, meshes, guesses)
     while start is not None:
-        attempts.append(attempt(problem, model, transcription, start, run))
-        on_event(_mesh_event(problem, attempts))
-        on_snapshot(snapshot(problem, attempts, run))
-        start = _next(problem, transcription.order, start, attempts[-1])
+        solved.append(solve_mesh(problem, model, transcription, start, run, publish))
+        on_event(_mesh_event(problem, solved))
+        publish()
+        start = _next(problem, transcription.order, start, solved[-1])
 
     with run.stage("certify"):
-        chosen = choose(attempts)
-        certificate = certify(problem, chosen.phases, finite(chosen.outcome.objective))
-    return conclude(problem, attempts, certificate, run)
+        chosen = choose(solved)
+        checks = JUDGED if run.stopped() else CHECKS
+        certificate = certify(problem, chosen.phases, finite(chosen.objective), checks)
+    return conclude(problem, solved, certificate, run)
 
 
-def _next(problem: Problem, order: int, start: Start, last: Attempt) -> Start | None:
+def _next(problem: Problem, order: int, start: Start, last: SolvedMesh) -> Start | None:
     """The next mesh, or None where this one is the last."""
     settings = problem.refinement
     if settings is None or not last.optimal or last.max_error <= settings.tolerance:
@@ -93,14 +99,14 @@ def _next(problem: Problem, order: int, start: Start, last: Attempt) -> Start | 
     return None if meshes is None else Start(start.number + 1, meshes, last.trajectories)
 
 
-def _mesh_event(problem: Problem, attempts: list[Attempt]) -> MeshSolved:
-    last = attempts[-1]
+def _mesh_event(problem: Problem, solved: list[SolvedMesh]) -> MeshSolved:
+    last = solved[-1]
     return MeshSolved(
-        mesh=len(attempts) - 1,
+        mesh=len(solved) - 1,
         segments=sum(len(errors) for errors in last.errors),
         max_error=finite(last.max_error),
         tolerance=problem.refinement.tolerance if problem.refinement else None,
-        objective=finite(last.outcome.objective),
+        objective=finite(last.objective),
         nlp_iterations=last.outcome.iterations,
         seconds=last.seconds,
     )

@@ -11,7 +11,30 @@ from schemas.events import EngineEvent, NlpIteration, StageStarted
 from schemas.results import Timing
 from solver.backends import Watch
 
+_PAUSE = 1.0  # s
+_PAUSES_PER_COST = 20.0
+
 Stage = Literal["build", "solve", "refine", "certify"]
+
+
+@dataclass(slots=True)
+class Pace:
+    """Lets something happen once a second at the most, and for a twentieth of the time."""
+
+    last: float
+    cost: float = 0.0
+
+    def due(self) -> bool:
+        """Whether it is time again."""
+        return time.monotonic() - self.last > max(_PAUSE, _PAUSES_PER_COST * self.cost)
+
+    @contextmanager
+    def measured(self) -> Iterator[None]:
+        """Measure what it costs."""
+        began = time.monotonic()
+        yield
+        self.last = time.monotonic()
+        self.cost = self.last - began
 
 
 @dataclass(slots=True)
@@ -37,7 +60,11 @@ class Run:
         finally:
             self.spent[name] = self.spent.get(name, 0.0) + time.monotonic() - began
 
-    def watch(self, mesh: int) -> Watch:
+    def pace(self) -> Pace:
+        """How often a running solve may be looked at."""
+        return Pace(self.started)
+
+    def watch(self, mesh: int, keep: Callable[[Watch], None]) -> Watch:
         """The watch over the NLP solve on one mesh."""
         began = time.monotonic()
 
@@ -52,7 +79,11 @@ class Run:
                 )
             )
 
-        return Watch(self.deadline, self.should_stop, report)
+        return Watch(self.deadline, self.should_stop, report, keep)
+
+    def stopped(self) -> bool:
+        """Whether the solve has been asked to end, or is out of time."""
+        return self.should_stop() or time.monotonic() >= self.deadline
 
     def timing(self) -> Timing:
         """Seconds of each stage so far."""

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from solver.backends.base import Backend, NlpStatus, Outcome
 from solver.backends.ipopt import Ipopt
-from solver.backends.watch import FEASIBLE, Watch
+from solver.backends.watch import FEASIBLE, Iterate, Watch
 
 BACKENDS: Mapping[str, type[Backend]] = {"ipopt": Ipopt}
 """Name -> backend."""
@@ -19,6 +19,7 @@ __all__ = [
     "BACKENDS",
     "FEASIBLE",
     "Backend",
+    "Iterate",
     "NlpStatus",
     "Outcome",
     "Watch",

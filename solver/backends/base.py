@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.problem import SolverSettings
-from solver.backends.watch import Watch
+from solver.backends.watch import Iterate, Watch
 from solver.nlp.task import NlpTask
 
 Array = NDArray[np.float64]
@@ -45,10 +45,7 @@ class Outcome:
 
     status: NlpStatus
     raw: str
-    z: Array
-    rows: Array
-    objective: float
-    violation: float
+    point: Iterate
     iterations: int
     seconds: float
 

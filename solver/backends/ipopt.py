@@ -88,16 +88,7 @@ class Ipopt(Backend):
         chosen, status = final, _status(raw, final, watch)
         if status in _ENDED_EARLY and watch.best is not None:
             chosen = watch.best
-        return Outcome(
-            status=status,
-            raw=raw,
-            z=chosen.z,
-            rows=chosen.rows,
-            objective=chosen.objective,
-            violation=chosen.violation,
-            iterations=max(watch.iterations, 0),
-            seconds=seconds,
-        )
+        return Outcome(status, raw, chosen, max(watch.iterations, 0), seconds)
 
 
 def _options(settings: SolverSettings, watch: Watch, *, warm: bool) -> dict[str, Any]:

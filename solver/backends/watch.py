@@ -15,6 +15,10 @@ FEASIBLE = 1e-6
 """Scaled violation below which an iterate counts as feasible when the best one is chosen."""
 
 
+def _let_go(_: object) -> None:
+    """Keep nothing."""
+
+
 class StopCause(StrEnum):
     """Why the watch ended a solve."""
 
@@ -50,11 +54,14 @@ class Watch:
         Asked at every iteration.
     report
         Called at every iteration with its number, objective and violation.
+    keep
+        Called when ``best`` has become better.
     """
 
     deadline: float
     should_stop: Callable[[], bool]
     report: Callable[[int, float, float], None]
+    keep: Callable[["Watch"], None] = _let_go
     best: Iterate | None = None
     cause: StopCause | None = None
     fault: Exception | None = None
@@ -71,9 +78,12 @@ class Watch:
         """
         self.iterations += 1
         finite = math.isfinite(iterate.objective) and math.isfinite(iterate.violation)
-        if finite and (self.best is None or iterate.better_than(self.best)):
+        better = finite and (self.best is None or iterate.better_than(self.best))
+        if better:
             self.best = iterate
         try:
+            if better:
+                self.keep(self)
             self.report(self.iterations, iterate.objective, iterate.violation)
             if self.should_stop():
                 self.cause = StopCause.REQUEST

@@ -5,6 +5,6 @@ else: numpy instead of casadi, scipy's DOP853 instead of a collocation, an adapt
 instead of the method's weights.
 """
 
-from solver.certificate.certify import CHECKS, certify
+from solver.certificate.certify import CHECKS, JUDGED, certify
 
-__all__ = ["CHECKS", "certify"]
+__all__ = ["CHECKS", "JUDGED", "certify"]

@@ -16,7 +16,7 @@ from solver.certificate.objective import objective as recomputed
 from solver.certificate.rollout import rollout
 from solver.numeric import MalformedCurves
 
-CHECKS: tuple[Callable[[Case], Check | None], ...] = (
+JUDGED: tuple[Callable[[Case], Check | None], ...] = (
     interval_defect,
     continuity,
     end_values,
@@ -26,14 +26,19 @@ CHECKS: tuple[Callable[[Case], Check | None], ...] = (
     path_constraints,
     boundary_constraints,
     recomputed,
-    rollout,
 )
 """In the order of the certificate's rows. A check answers None where it does not apply."""
+
+CHECKS = (*JUDGED, rollout)
+"""All of them; the rollout has no say in the verdict and takes the most time."""
 
 
 @np.errstate(all="ignore")  # numbers that do not exist are findings, not warnings
 def certify(
-    problem: Problem, phases: Sequence[PhaseResult], objective: float | None
+    problem: Problem,
+    phases: Sequence[PhaseResult],
+    objective: float | None,
+    checks: Sequence[Callable[[Case], Check | None]] = CHECKS,
 ) -> Certificate:
     """Judge published curves against the problem's own text, by other means than the solver's.
 
@@ -45,6 +50,8 @@ def certify(
         The result of every phase. Only names and curves are read.
     objective
         The published value of the objective.
+    checks
+        ``CHECKS``, or ``JUDGED`` where there is no time for the rest.
 
     Returns
     -------
@@ -55,9 +62,9 @@ def certify(
         case = Case.open(problem, phases, objective)
     except MalformedCurves as reason:
         return Certificate(verdict="not_certified", checks=[_unreadable(str(reason))])
-    checks = [row for row in (check(case) for check in CHECKS) if row is not None]
-    passed = all(check.passed for check in checks if check.judged)
-    return Certificate(verdict="certified" if passed else "not_certified", checks=checks)
+    rows = [row for row in (check(case) for check in checks) if row is not None]
+    passed = all(row.passed for row in rows if row.judged)
+    return Certificate(verdict="certified" if passed else "not_certified", checks=rows)
 
 
 def _unreadable(reason: str) -> Check:

@@ -59,19 +59,18 @@ def assemble(program: Program, scaling: Scaling) -> Nlp:
     w = z * ca.DM(scaling.columns)
     stages = [_Stage(group, program, index) for index, group in enumerate(program.groups)]
     objective = ca.densify(sum((stage.cost(w) for stage in stages), start=ca.MX(0)))
-    objective = objective / scaling.objective
     row_scale = 1.0 / scaling.rows
     rows = ca.densify(_rows(stages, w) * ca.DM(row_scale))
 
     size = program.variables.size
     slopes = [stage.slopes(w) for stage in stages]
-    gradient = _scatter(slopes, (size, 1), scaling.columns, np.array([1.0 / scaling.objective]))
+    gradient = _scatter(slopes, (size, 1), scaling.columns, np.ones(1))
     entries = [stage.jacobian(w) for stage in stages]
     jacobian = _scatter(entries, (program.rows, size), row_scale, scaling.columns)
 
     sigma, lam = ca.MX.sym("sigma"), ca.MX.sym("lam", program.rows)
     own, lifted = ca.vertsplit(lam * ca.DM(row_scale), [0, program.own_rows, program.rows])
-    sums = ca.vertcat(sigma / scaling.objective, lifted)
+    sums = ca.vertcat(sigma, lifted)
     curvature = [stage.hessian(w, own, sums) for stage in stages]
     hessian = _scatter(curvature, (size, size), scaling.columns, scaling.columns)
     return Nlp(

@@ -1,4 +1,4 @@
-"""Attempts and certificate -> the published solution: status, message, advice, history."""
+"""SolvedMeshs and certificate -> the published solution: status, message, advice, history."""
 
 import platform
 from collections.abc import Sequence
@@ -19,12 +19,12 @@ from schemas.results import (
     SolutionStatus,
     SolverReport,
 )
-from solver.attempt import Attempt
 from solver.backends import NlpStatus
 from solver.nlp.residuals import RowResidual
 from solver.run import Run
 from solver.solution.words import advice, message, warnings
-from solver.transcriptions.extract import finite
+from solver.solve_mesh import SolvedMesh
+from solver.transcribe import finite
 
 _STATUS = {
     NlpStatus.ACCEPTABLE: SolutionStatus.ACCEPTABLE,
@@ -39,33 +39,33 @@ _STATUS = {
 """What becomes of an NLP that did not end at an optimum."""
 
 
-def choose(attempts: Sequence[Attempt]) -> Attempt:
-    """The attempt to publish: the last, or the one before where the last came to nothing.
+def choose(solved: Sequence[SolvedMesh]) -> SolvedMesh:
+    """The mesh to publish: the last, or the one before where the last came to nothing.
 
     Only an infeasible last mesh is published as it is: its residuals say what cannot be met.
     """
-    last = attempts[-1]
+    last = solved[-1]
     told = (NlpStatus.OPTIMAL, NlpStatus.ACCEPTABLE, NlpStatus.INFEASIBLE)
-    return last if last.outcome.status in told or len(attempts) == 1 else attempts[-2]
+    return last if last.outcome.status in told or len(solved) == 1 else solved[-2]
 
 
 def conclude(
-    problem: Problem, attempts: Sequence[Attempt], certificate: Certificate, run: Run
+    problem: Problem, solved: Sequence[SolvedMesh], certificate: Certificate, run: Run
 ) -> Solution:
     """The solution of a finished run."""
-    chosen = choose(attempts)
-    status = _status(problem, attempts[-1], certificate)
-    return _solution(problem, attempts, chosen, certificate, status, run)
+    chosen = choose(solved)
+    status = _status(problem, solved[-1], certificate)
+    return _solution(problem, solved, chosen, certificate, status, run)
 
 
-def snapshot(problem: Problem, attempts: Sequence[Attempt], run: Run) -> Solution:
+def snapshot(problem: Problem, solved: Sequence[SolvedMesh], run: Run) -> Solution:
     """An uncertified solution of a run that goes on; what is served if it is killed."""
     unchecked = Certificate(verdict="not_checked", checks=[])
-    chosen = choose(attempts)
-    return _solution(problem, attempts, chosen, unchecked, SolutionStatus.CANCELLED, run)
+    chosen = choose(solved)
+    return _solution(problem, solved, chosen, unchecked, SolutionStatus.CANCELLED, run)
 
 
-def _status(problem: Problem, last: Attempt, certificate: Certificate) -> SolutionStatus:
+def _status(problem: Problem, last: SolvedMesh, certificate: Certificate) -> SolutionStatus:
     """How the mathematics ended: optimal, meshed and certified is ``converged``."""
     if not last.optimal:
         return _STATUS[last.outcome.status]
@@ -78,8 +78,8 @@ def _status(problem: Problem, last: Attempt, certificate: Certificate) -> Soluti
 
 def _solution(
     problem: Problem,
-    attempts: Sequence[Attempt],
-    chosen: Attempt,
+    solved: Sequence[SolvedMesh],
+    chosen: SolvedMesh,
     certificate: Certificate,
     status: SolutionStatus,
     run: Run,
@@ -88,12 +88,12 @@ def _solution(
     return Solution(
         name=problem.name,
         status=status,
-        objective=finite(chosen.outcome.objective),
-        message=message(status, attempts, certificate),
+        objective=finite(chosen.objective),
+        message=message(status, solved, certificate),
         advice=advice(status, residuals, certificate),
         warnings=warnings(problem, chosen.redundancy),
         phases=chosen.phases,
-        mesh_refinement=_history(problem, attempts),
+        mesh_refinement=_history(problem, solved),
         certificate=certificate,
         solver=SolverReport(
             backend=problem.solver.backend,
@@ -109,31 +109,31 @@ def _solution(
     )
 
 
-def _history(problem: Problem, attempts: Sequence[Attempt]) -> MeshRefinement:
-    settings, last = problem.refinement, attempts[-1]
+def _history(problem: Problem, solved: Sequence[SolvedMesh]) -> MeshRefinement:
+    settings, last = problem.refinement, solved[-1]
     tolerance = settings.tolerance if settings else None
     return MeshRefinement(
         tolerance=tolerance,
         converged=last.optimal and (tolerance is None or last.max_error <= tolerance),
-        iterations=[_mesh(attempt) for attempt in attempts],
+        iterations=[_mesh(mesh) for mesh in solved],
     )
 
 
-def _mesh(attempt: Attempt) -> MeshIteration:
+def _mesh(mesh: SolvedMesh) -> MeshIteration:
     spans = [
         (start, end)
-        for phase in attempt.phases
+        for phase in mesh.phases
         for start, end in zip(phase.knots[:-1], phase.knots[1:], strict=True)
     ]
     return MeshIteration(
         segments=len(spans),
-        max_error=finite(attempt.max_error),
-        errors=[finite(error) for error in np.concatenate(attempt.errors)],
+        max_error=finite(mesh.max_error),
+        errors=[finite(error) for error in np.concatenate(mesh.errors)],
         spans=spans,
-        objective=finite(attempt.outcome.objective),
-        nlp_iterations=attempt.outcome.iterations,
-        seconds=attempt.seconds,
-        status=attempt.outcome.status,
+        objective=finite(mesh.objective),
+        nlp_iterations=mesh.outcome.iterations,
+        seconds=mesh.seconds,
+        status=mesh.outcome.status,
     )
 
 

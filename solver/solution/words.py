@@ -5,8 +5,8 @@ from collections.abc import Iterator, Sequence
 from schemas.expressions import Expression, warnings_in
 from schemas.problem import Problem
 from schemas.results import Certificate, Residual, SolutionStatus
-from solver.attempt import Attempt
 from solver.nlp.redundancy import Redundancy
+from solver.solve_mesh import SolvedMesh
 
 _MESSAGES = {
     SolutionStatus.CONVERGED: "Optimal (a local minimum), within the mesh tolerance, certified.",
@@ -49,14 +49,14 @@ _OVERSHOOT = (
 )
 
 
-def message(status: SolutionStatus, attempts: Sequence[Attempt], certificate: Certificate) -> str:
+def message(status: SolutionStatus, solved: Sequence[SolvedMesh], certificate: Certificate) -> str:
     """One or two sentences on how the solve ended."""
     text = _MESSAGES[status]
     if status is SolutionStatus.CERTIFICATE_FAILED:
         names = ", ".join(row.name for row in certificate.checks if row.judged and not row.passed)
         text += f" Failed: {names}."
-    if len(attempts) > 1 and not attempts[-1].optimal:
-        segments = sum(len(errors) for errors in attempts[-2].errors)
+    if len(solved) > 1 and not solved[-1].optimal:
+        segments = sum(len(errors) for errors in solved[-2].errors)
         text += f" The mesh before, of {segments} segments, was solved to an optimum."
     return text
 

@@ -13,8 +13,8 @@ from solver.nlp.assembly import Nlp, assemble
 from solver.nlp.program import Program
 from solver.nlp.scaling import typical_scaling
 from solver.trajectory import initial_guess
+from solver.transcribe import transcribe
 from solver.transcriptions import make_transcription
-from solver.transcriptions.transcribe import transcribe
 from tests.support.problems import cart_pole
 
 METHODS = [

@@ -206,3 +206,21 @@ def test_warnings_name_what_is_not_smooth() -> None:
     integrals = {"effort": "u^2 + 0*abs(u)"}
     solution = solved(block(phase={"integrals": integrals}))
     assert any("abs" in warning for warning in solution.warnings)
+
+
+def test_a_long_mesh_shows_its_best_iterate_now_and_then(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("solver.run._PAUSE", 0.0)
+    monkeypatch.setattr("solver.run._PAUSES_PER_COST", 0.0)
+    snapshots: list[Solution] = []
+    document = examples.load("cart_pole") | {"refinement": None}
+    solution = solve(read_problem(document), on_snapshot=snapshots.append)
+    assert len(snapshots) > 5
+    assert {snapshot.status for snapshot in snapshots} == {SolutionStatus.CANCELLED}
+    assert [len(snapshot.mesh_refinement.iterations) for snapshot in snapshots[:2]] == [1, 1]
+    assert snapshots[-1].objective == solution.objective
+
+
+def test_a_fast_solve_is_shown_only_when_a_mesh_is_solved() -> None:
+    snapshots: list[Solution] = []
+    solve(read_problem(block()), on_snapshot=snapshots.append)
+    assert len(snapshots) == 1

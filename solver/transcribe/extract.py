@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 from footfall.curves import Curves
 from schemas.results import CurveGroup, Group, PhaseResult
 from solver.trajectory import Trajectory
+from solver.transcribe.layout import PhaseLayout
+from solver.transcribe.transcribe import Transcribed
 from solver.transcriptions.base import Transcription
-from solver.transcriptions.layout import PhaseLayout
-from solver.transcriptions.transcribe import Transcribed
 
 Array = NDArray[np.float64]
 

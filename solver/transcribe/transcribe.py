@@ -12,10 +12,10 @@ from solver.nlp.program import Program
 from solver.nlp.stages import StageGroup
 from solver.nlp.variables import Variables
 from solver.trajectory import Trajectory
+from solver.transcribe.ends import join_ends
+from solver.transcribe.layout import Layouter, PhaseLayout
+from solver.transcribe.segments import knot_group, segment_group, segment_nodes
 from solver.transcriptions.base import Transcription
-from solver.transcriptions.ends import join_ends
-from solver.transcriptions.layout import Layouter, PhaseLayout
-from solver.transcriptions.segments import knot_group, segment_group, segment_nodes
 
 
 @dataclass(frozen=True, slots=True)

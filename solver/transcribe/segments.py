@@ -10,8 +10,8 @@ from solver.model import Constraint, Interval
 from solver.model.symbolic import PhaseFunctions
 from solver.nlp.stages import Rows, StageGroup
 from solver.nlp.variables import Array, Indices
+from solver.transcribe.layout import PhaseLayout
 from solver.transcriptions.base import Collocation, Point, Segment, Transcription
-from solver.transcriptions.layout import PhaseLayout
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,9 +12,9 @@ from solver.model.symbolic import Ends, PhaseFunctions, boundary_scope, objectiv
 from solver.nlp.stages import Rows, StageGroup
 from solver.nlp.variables import Array, Variables
 from solver.trajectory import Trajectory
-from solver.transcriptions.integrals import classify, guessed_integrals
-from solver.transcriptions.layout import PhaseLayout
-from solver.transcriptions.segments import limit_magnitude
+from solver.transcribe.integrals import classify, guessed_integrals
+from solver.transcribe.layout import PhaseLayout
+from solver.transcribe.segments import limit_magnitude
 
 _SHORTEST = 1e-6  # s: a phase of free times keeps its direction
 

@@ -1,0 +1,153 @@
+"""One mesh: transcribe, assemble, solve, read out, estimate the error."""
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from schemas.errors import InvalidModel, Issue
+from schemas.problem import Problem
+from schemas.results import PhaseResult
+from solver.backends import NlpStatus, Outcome, Watch, make_backend
+from solver.diagnosis import check_start
+from solver.mesh import Mesh
+from solver.model import Model
+from solver.nlp.redundancy import Redundancy, find_redundancy
+from solver.nlp.residuals import RowResidual, ranked_residuals
+from solver.nlp.scaling import Scaling, typical_scaling
+from solver.nlp.task import NlpTask
+from solver.refinement.error import segment_errors
+from solver.run import Run
+from solver.trajectory import Trajectory
+from solver.transcribe import Transcribed, extract, transcribe
+from solver.transcriptions import Transcription
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """From where a mesh is solved. ``number`` counts meshes from 0; later ones start warm."""
+
+    number: int
+    meshes: Sequence[Mesh]
+    guesses: Sequence[Trajectory]
+
+
+@dataclass(frozen=True, slots=True)
+class SolvedMesh:
+    """What solving one mesh gave. ``errors`` (segments,) per phase."""
+
+    outcome: Outcome
+    trajectories: list[Trajectory]
+    phases: list[PhaseResult]
+    errors: list[Array]
+    residuals: list[RowResidual]
+    redundancy: Redundancy
+    variables: int
+    rows: int
+    seconds: float
+
+    @property
+    def optimal(self) -> bool:
+        """Whether the NLP solver reports an optimum."""
+        return self.outcome.status is NlpStatus.OPTIMAL
+
+    @property
+    def objective(self) -> float:
+        """The objective at the outcome's point."""
+        return self.outcome.point.objective
+
+    @property
+    def max_error(self) -> float:
+        """The largest error of a segment."""
+        return float(np.max(np.concatenate(self.errors)))
+
+
+@dataclass(frozen=True, slots=True)
+class _Built:
+    """A mesh ready to be solved."""
+
+    problem: Problem
+    transcription: Transcription
+    transcribed: Transcribed
+    scaling: Scaling
+    task: NlpTask
+    redundancy: Redundancy
+    began: float
+
+    def read(self, outcome: Outcome) -> SolvedMesh:
+        """The trajectories at a point of the NLP, their errors, and what is violated there."""
+        program, scaling = self.transcribed.program, self.scaling
+        w, rows = outcome.point.z * scaling.columns, outcome.point.rows * scaling.rows
+        trajectories, phases = extract(self.transcribed, self.transcription, w)
+        specs = self.problem.phases
+        return SolvedMesh(
+            outcome=outcome,
+            trajectories=trajectories,
+            phases=phases,
+            errors=[segment_errors(*pair) for pair in zip(specs, phases, strict=True)],
+            residuals=ranked_residuals(program, scaling, w, rows),
+            redundancy=self.redundancy,
+            variables=program.variables.size,
+            rows=program.rows,
+            seconds=time.monotonic() - self.began,
+        )
+
+
+def solve_mesh(
+    problem: Problem,
+    model: Model,
+    transcription: Transcription,
+    start: Start,
+    run: Run,
+    publish: Callable[[SolvedMesh], None],
+) -> SolvedMesh:
+    """Solve one mesh; now and then ``publish`` what the best iterate so far looks like.
+
+    Raises
+    ------
+    InvalidModel
+        If the model has no finite value at the first guess, or the backend refuses it.
+    """
+    with run.stage("build"):
+        built = _build(problem, model, transcription, start)
+    pace = run.pace()
+
+    def keep(watch: Watch) -> None:
+        if pace.due() and watch.best is not None:
+            with pace.measured():
+                unfinished = Outcome(NlpStatus.STOPPED, "", watch.best, watch.iterations, 0.0)
+                publish(built.read(unfinished))
+
+    with run.stage("solve"):
+        outcome = _solve(problem, built.task, start.number, lambda: run.watch(start.number, keep))
+    with run.stage("refine"):
+        return built.read(outcome)
+
+
+def _build(problem: Problem, model: Model, transcription: Transcription, start: Start) -> _Built:
+    began = time.monotonic()
+    transcribed = transcribe(model, transcription, start.meshes, start.guesses)
+    scaling = typical_scaling(transcribed.program)
+    task = NlpTask.of(transcribed.program, scaling)
+    if start.number == 0:
+        check_start(problem, task, start.guesses)
+    redundancy = find_redundancy(transcribed.program, scaling, task.nlp)
+    reduced = task.without(redundancy)
+    return _Built(problem, transcription, transcribed, scaling, reduced, redundancy, began)
+
+
+def _solve(problem: Problem, task: NlpTask, mesh: int, watch: Callable[[], Watch]) -> Outcome:
+    """Solve, on later meshes first from a warm start; cold again where that fails."""
+    backend, settings = make_backend(problem.solver.backend), problem.solver
+    if refusal := backend.refusal(task):
+        raise InvalidModel([Issue("/solver/backend", refusal)])
+    if mesh == 0:
+        return backend.solve(task, settings, watch(), warm=False)
+    outcome = backend.solve(task, settings, watch(), warm=True)
+    if outcome.status in (NlpStatus.OPTIMAL, NlpStatus.STOPPED, NlpStatus.TIME_LIMIT):
+        return outcome
+    return backend.solve(task, settings, watch(), warm=False)
