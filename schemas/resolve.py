@@ -8,6 +8,7 @@ import math
 from collections.abc import Mapping
 
 from schemas.expressions import Expression, constant
+from schemas.phases import Constraint
 from schemas.systems import System
 from schemas.values import Bound, Scalar
 
@@ -39,7 +40,7 @@ def scalar(value: Scalar, names: Mapping[str, float]) -> float:
     return value.source
 
 
-def interval(bound: Bound | None, names: Mapping[str, float]) -> tuple[float, float]:
+def interval(limited: Bound | Constraint | None, names: Mapping[str, float]) -> tuple[float, float]:
     """Lower and upper limit; open sides, and a bound that is not there, are infinite.
 
     Raises
@@ -47,8 +48,8 @@ def interval(bound: Bound | None, names: Mapping[str, float]) -> tuple[float, fl
     ExpressionError
         Where a side cannot be evaluated.
     """
-    if bound is None:
+    if limited is None:
         return -math.inf, math.inf
-    lower = -math.inf if bound.lower is None else scalar(bound.lower, names)
-    upper = math.inf if bound.upper is None else scalar(bound.upper, names)
+    lower = -math.inf if limited.lower is None else scalar(limited.lower, names)
+    upper = math.inf if limited.upper is None else scalar(limited.upper, names)
     return lower, upper

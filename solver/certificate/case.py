@@ -16,8 +16,8 @@ from solver.numeric import (
     Array,
     Integral,
     MalformedCurves,
+    PhaseCurves,
     Samples,
-    Trajectory,
     along,
     dynamics,
     integrate,
@@ -35,7 +35,7 @@ class PhaseCase:
     """One phase's text and its curves. Not slotted: what several checks need is cached."""
 
     spec: Phase
-    trajectory: Trajectory
+    curves: PhaseCurves
 
     @property
     def name(self) -> str:
@@ -55,7 +55,7 @@ class PhaseCase:
     @functools.cached_property
     def samples(self) -> Samples:
         """The curves between the nodes, with both limits at every break."""
-        return self.trajectory.grid(np.linspace(-1.0, 1.0, SAMPLES))
+        return self.curves.grid(np.linspace(-1.0, 1.0, SAMPLES))
 
     @functools.cached_property
     def scale(self) -> Array:
@@ -67,7 +67,7 @@ class PhaseCase:
         """The named integrals over the published curves."""
         trees = [expression.tree for expression in self.spec.integrals.values()]
         integrand = along(self.spec.system, trees)
-        return integrate(self.trajectory, lambda at: integrand(at.t, at.x, at.u))
+        return integrate(self.curves, lambda at: integrand(at.t, at.x, at.u))
 
     @functools.cached_property
     def ends(self) -> dict[str, float]:
@@ -114,7 +114,7 @@ class Case:
         for spec in problem.phases:
             if spec.name not in by_name:
                 raise MalformedCurves(f"phase {spec.name} has no result")
-            phases.append(PhaseCase(spec, Trajectory.read(spec, by_name[spec.name])))
+            phases.append(PhaseCase(spec, PhaseCurves.read(spec, by_name[spec.name])))
         settings = problem.certificate
         return cls(
             problem, tuple(phases), objective, _tolerance(problem), settings.constraint_tolerance

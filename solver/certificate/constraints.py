@@ -1,8 +1,5 @@
 """Path and boundary constraints."""
 
-import math
-from collections.abc import Mapping
-
 import numpy as np
 
 from schemas import resolve
@@ -33,7 +30,7 @@ def _along_path(phase: PhaseCase) -> list[Finding]:
         return []
     values = along(phase.spec.system, [row.expression.tree for row in rows])(at.t, at.x, at.u)
     sizes = [
-        violation(value, _limits(row, phase.constants))
+        violation(value, resolve.interval(row, phase.constants))
         for row, value in zip(rows, values, strict=True)
     ]
     return [worst_sample(phase.name, [row.name for row in rows], at.t, np.array(sizes))]
@@ -41,13 +38,5 @@ def _along_path(phase: PhaseCase) -> list[Finding]:
 
 def _at_ends(phase: PhaseCase, constraint: Constraint) -> Finding:
     value = np.array(evaluate(constraint.expression.tree, phase.scope))
-    size = violation(value, _limits(constraint, phase.constants))
+    size = violation(value, resolve.interval(constraint, phase.constants))
     return Finding(float(size), f"phase {phase.name}, {constraint.name}")
-
-
-def _limits(constraint: Constraint, constants: Mapping[str, float]) -> tuple[float, float]:
-    lower, upper = (
-        open_end if side is None else resolve.scalar(side, constants)
-        for side, open_end in ((constraint.lower, -math.inf), (constraint.upper, math.inf))
-    )
-    return lower, upper

@@ -9,11 +9,11 @@ from solver.certificate.findings import Finding, judge, worst_sample
 
 def continuity(case: Case) -> Check | None:
     """The largest jump of a state between segments, relative to one plus its largest size."""
-    findings = [_jump(phase) for phase in case.phases if phase.trajectory.segments > 1]
+    findings = [_jump(phase) for phase in case.phases if phase.curves.segments > 1]
     return judge("continuity", findings, case.tolerance)
 
 
 def _jump(phase: PhaseCase) -> Finding:
-    ends = phase.trajectory.states.grid(np.array([-1.0, 1.0]))
+    ends = phase.curves.states.grid(np.array([-1.0, 1.0]))
     sizes = np.abs(ends[:, 1:, 0] - ends[:, :-1, 1]) / phase.scale[:, None]
-    return worst_sample(phase.name, phase.spec.system.states, phase.trajectory.breaks[1:-1], sizes)
+    return worst_sample(phase.name, phase.spec.system.states, phase.curves.breaks[1:-1], sizes)

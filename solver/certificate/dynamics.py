@@ -30,23 +30,23 @@ def interval_defect(case: Case) -> Check | None:
 
 
 def _defect(phase: PhaseCase, tolerance: float) -> Finding:
-    curve = phase.trajectory.states.grid(PLACES)
+    curve = phase.curves.states.grid(PLACES)
     try:
         motion = _integrated(phase, curve[:, :, 0], tolerance)
     except Unfinished as reason:
         return Finding(math.nan, f"{_culprit(phase, reason)}: {reason}")
     sizes = np.abs(motion - curve) / phase.scale[:, None, None]
-    times = phase.trajectory.time(np.arange(curve.shape[1])[:, None], PLACES)
+    times = phase.curves.time(np.arange(curve.shape[1])[:, None], PLACES)
     states = phase.spec.system.states
     return worst_sample(phase.name, states, times.ravel(), sizes.reshape(len(states), -1))
 
 
 def _culprit(phase: PhaseCase, reason: Unfinished) -> str:
     """The fastest state when the integrator gave up, one without a finite rate first."""
-    segments = phase.trajectory.segments
+    segments = phase.curves.segments
     speed = np.nan_to_num(np.abs(reason.rates), nan=np.inf)
     row, segment = divmod(int(np.argmax(speed)), segments)
-    time = phase.trajectory.time(np.array(segment), reason.at)
+    time = phase.curves.time(np.array(segment), reason.at)
     return f"phase {phase.name}, {phase.spec.system.states[row]}, t = {time:.6g} s"
 
 
@@ -56,16 +56,16 @@ def _integrated(phase: PhaseCase, start: Array, tolerance: float) -> Array:
     scipy judges a step by the root mean square over all of it, in which one bad segment of N
     hides behind the others; the tolerance is divided by sqrt(N) to make up for it.
     """
-    trajectory = phase.trajectory
-    half, every = trajectory.lengths / 2, np.arange(trajectory.segments)
+    curves = phase.curves
+    half, every = curves.lengths / 2, np.arange(curves.segments)
 
     def rates(s: float, y: Array) -> Array:
-        u = trajectory.controls.grid(np.array([s]))[:, :, 0]
-        f = phase.dynamics(trajectory.time(every, s), y.reshape(start.shape), u)
+        u = curves.controls.grid(np.array([s]))[:, :, 0]
+        f = phase.dynamics(curves.time(every, s), y.reshape(start.shape), u)
         return np.asarray((f * half).ravel())
 
     evaluations = max(2_000, min(EVALUATIONS, WORK // start.size))
-    tight = min(1e-10, tolerance / 1000) / math.sqrt(trajectory.segments)
+    tight = min(1e-10, tolerance / 1000) / math.sqrt(curves.segments)
     integrator = Integrator(tight, evaluations)
     motion = [start.ravel()]
     for a, b in itertools.pairwise(PLACES):

@@ -26,25 +26,25 @@ def rollout(case: Case) -> Check | None:
 
 
 def _deviation(phase: PhaseCase) -> Finding:
-    trajectory = phase.trajectory
-    curve, integrator = trajectory.knots(), Integrator(TOLERANCE)
+    curves = phase.curves
+    curve, integrator = curves.knots(), Integrator(TOLERANCE)
     motion = curve.copy()
-    for k in range(trajectory.segments):
+    for k in range(curves.segments):
         # From break to break: a step over the kink of a control there would cost accuracy.
         try:
             motion[:, k + 1] = integrator.advance(_rates(phase, k), -1.0, motion[:, k], 1.0)
         except Unfinished as reason:
-            time = trajectory.time(np.array(k), reason.at)
+            time = curves.time(np.array(k), reason.at)
             return Finding(math.nan, f"phase {phase.name}, t = {time:.6g} s: {reason}")
     sizes = np.abs(motion - curve) / phase.scale[:, None]
-    return worst_sample(phase.name, phase.spec.system.states, trajectory.breaks, sizes)
+    return worst_sample(phase.name, phase.spec.system.states, curves.breaks, sizes)
 
 
 def _rates(phase: PhaseCase, segment: int) -> Callable[[float, Array], Array]:
     """The rates of the states over s in [-1, 1], under the control of one segment."""
-    start, end = phase.trajectory.breaks[segment : segment + 2].tolist()
+    start, end = phase.curves.breaks[segment : segment + 2].tolist()
     half = (end - start) / 2
-    control = phase.trajectory.controls.coefficients[:, segment].T
+    control = phase.curves.controls.coefficients[:, segment].T
 
     def rates(s: float, x: Array) -> Array:
         u = np.asarray(chebyshev.chebval(s, control, tensor=False))

@@ -1,6 +1,5 @@
 """Problem -> Model: constants evaluated, bounds intersected, names gone from pydantic."""
 
-import math
 from collections.abc import Mapping
 
 from schemas import resolve
@@ -44,8 +43,8 @@ def _phase(spec: PhaseSpec) -> Phase:
     )
 
 
-def _interval(bound: Bound | None, constants: Mapping[str, float]) -> Interval:
-    return Interval(*resolve.interval(bound, constants))
+def _interval(limited: Bound | ConstraintSpec | None, constants: Mapping[str, float]) -> Interval:
+    return Interval(*resolve.interval(limited, constants))
 
 
 def _meet(a: Interval, b: Interval) -> Interval:
@@ -53,6 +52,4 @@ def _meet(a: Interval, b: Interval) -> Interval:
 
 
 def _constraint(spec: ConstraintSpec, constants: Mapping[str, float]) -> Constraint:
-    lower = -math.inf if spec.lower is None else resolve.scalar(spec.lower, constants)
-    upper = math.inf if spec.upper is None else resolve.scalar(spec.upper, constants)
-    return Constraint(spec.name, spec.expression.tree, Interval(lower, upper))
+    return Constraint(spec.name, spec.expression.tree, _interval(spec, constants))

@@ -2,9 +2,9 @@
 
 A redundant row leaves the multipliers undetermined and breaks most solvers. The equality rows,
 and as rows of their own the values fixed at the end of each phase, are factorised in order; a
-row whose pivot vanishes lies in the span of those before it. It counts as implied only if the
-same holds at a second, random point, values included: then it is dropped. Rows that contradict
-the others are kept, for the solver to refuse and for the report to name.
+row whose pivot vanishes is suspected to lie in the span of those before it. It counts as implied
+if it does so at two random points near the guess, values included: then it is dropped. Rows that
+contradict the others are kept, for the solver to refuse and for the report to name.
 """
 
 from collections.abc import Sequence
@@ -27,13 +27,16 @@ Matrix = Any  # a scipy.sparse.csr_array; scipy ships no types
 _PIVOT = 1e-9  # squared distance of a unit row to the span of the rows before it
 _MATCH = 1e-7  # relative residual up to which a row equals a combination of others
 _NUDGE = 1e-2  # of each variable's size: how far the test points lie from the guess
+_TRIFLE = 1e-14  # keeps a factorisation of dependent rows from dividing by zero
+_AT_ONCE = 64  # suspects: bounds the memory where there is one at every node
 
 
 @dataclass(frozen=True, slots=True)
 class Redundancy:
     """What is implied: positions of rows and of fixed variables, and how to call them.
 
-    ``contradictions`` names equalities that depend on others but ask for another value.
+    ``names`` has each name once, at however many nodes it stands; ``contradictions`` names
+    equalities that depend on others but ask for another value.
     """
 
     rows: Indices
@@ -82,16 +85,24 @@ class _Equalities:
             values
         ) / length
 
-    def name(self, position: int) -> str:
-        """How a report calls an equality."""
-        if position < len(self.rows):
-            return list(self.program.labels())[int(self.rows[position])].name
-        index = self.fixed[position - len(self.rows)]
+    def shared(self) -> NDArray[np.bool_]:
+        """Columns of the Jacobian that many rows may use: variables at no node, such as times."""
+        anywhere = np.zeros(self.program.variables.size, dtype=bool)
         for block in self.program.variables.blocks:
-            if index in block.indices:
-                row = int(np.argwhere(block.indices == index)[0, 0])
-                return f"final {block.names[row]}"
-        raise AssertionError(f"variable {index} stands in no block")
+            anywhere[block.indices[:, np.isnan(block.fractions)]] = True
+        return np.delete(anywhere, self.pinned)
+
+    def names(self, positions: Indices) -> tuple[str, ...]:
+        """How a report calls some equalities, each name once."""
+        labels = [label.name for label in self.program.labels()]
+        final = {
+            int(index): f"final {name}"
+            for block in self.program.variables.blocks
+            for name, indices in zip(block.names, block.indices, strict=True)
+            for index in indices
+        }
+        called = [labels[row] for row in self.rows] + [final[index] for index in self.fixed]
+        return tuple(dict.fromkeys(called[position] for position in positions))
 
 
 def find_redundancy(program: Program, scaling: Scaling, nlp: Nlp) -> Redundancy:
@@ -100,45 +111,65 @@ def find_redundancy(program: Program, scaling: Scaling, nlp: Nlp) -> Redundancy:
     rng = np.random.default_rng(0)
     nudges = _NUDGE * rng.standard_normal((2, program.variables.size))
     tests = [equalities.at(nlp, nudge) for nudge in nudges]
-    suspects = _dependent_rows(tests[0][0])
-    found: dict[bool, list[int]] = {True: [], False: []}
-    for suspect in suspects:
-        gaps = [_gaps(matrix, values, suspect, suspects) for matrix, values in tests]
-        if all(direction < _MATCH for direction, _ in gaps):
-            found[all(value < _MATCH for _, value in gaps)].append(suspect)
-    implied, split = np.array(found[True], dtype=int), len(equalities.rows)
+    suspects = _dependent_rows(tests, equalities.shared())
+    found = [_deviations(matrix, values, suspects) for matrix, values in tests]
+    spanned = np.all([distances < _MATCH for distances, _ in found], axis=0)
+    agree = np.all([gaps < _MATCH for _, gaps in found], axis=0)
+    implied, split = suspects[spanned & agree], len(equalities.rows)
     return Redundancy(
         equalities.rows[implied[implied < split]],
         equalities.fixed[implied[implied >= split] - split],
-        tuple(equalities.name(position) for position in found[True]),
-        tuple(equalities.name(position) for position in found[False]),
+        equalities.names(implied),
+        equalities.names(suspects[spanned & ~agree]),
     )
 
 
-def _gram(matrix: Matrix) -> Any:
-    """Factors of A A', in order, a trifle added to the diagonal."""
-    gram = matrix @ matrix.T + 1e-14 * sparse.eye_array(matrix.shape[0])
+def _dependent_rows(tests: Sequence[tuple[Matrix, Array]], shared: NDArray[np.bool_]) -> Indices:
+    """Rows in the span of the others, of a dependent set the last ones.
+
+    A column that all rows use would fill A A', at the price of its rank cubed; so the pivots are
+    taken without the shared ones. That suspects too many, at most one for each such column.
+    """
+    if not all(np.all(np.isfinite(matrix.data)) for matrix, _ in tests):
+        return np.array([], dtype=int)
+    matrix, values = tests[0]
+    suspects = _vanishing_pivots(matrix[:, np.flatnonzero(~shared)])
+    for _ in range(int(shared.sum())):
+        outside = np.flatnonzero(_deviations(matrix, values, suspects)[0] >= _MATCH)
+        if len(outside) == 0:
+            break
+        suspects = np.delete(suspects, outside[0])
+    return suspects
+
+
+def _vanishing_pivots(matrix: Matrix) -> Indices:
+    """Rows in the span of those before them, by the pivots of A A' in order."""
+    if matrix.shape[0] == 0:
+        return np.array([], dtype=int)
+    gram = sparse.csc_array(matrix @ matrix.T + _TRIFLE * sparse.eye_array(matrix.shape[0]))
     options = {"SymmetricMode": True}
-    return splu(
-        sparse.csc_array(gram), permc_spec="NATURAL", diag_pivot_thresh=0.0, options=options
+    factors = splu(gram, permc_spec="NATURAL", diag_pivot_thresh=0.0, options=options)
+    return np.flatnonzero(np.abs(factors.U.diagonal()) < _PIVOT)
+
+
+def _deviations(matrix: Matrix, values: Array, rows: Indices) -> tuple[Array, Array]:
+    """How far rows (k,), and their values, are from the nearest combinations of all others.
+
+    Least squares by the augmented system [I B'; B 0], which full columns of B do not fill.
+    """
+    if len(rows) == 0:
+        return np.empty(0), np.empty(0)
+    others = np.setdiff1d(np.arange(matrix.shape[0]), rows)
+    basis, width = matrix[others], matrix.shape[1]
+    corner = -_TRIFLE * sparse.eye_array(len(others))
+    factors = splu(
+        sparse.block_array([[sparse.eye_array(width), basis.T], [basis, corner]]).tocsc()
     )
-
-
-def _dependent_rows(matrix: Matrix) -> list[int]:
-    """Rows in the span of those before them, by the pivots of A A'."""
-    if matrix.shape[0] == 0 or not np.all(np.isfinite(matrix.data)):
-        return []
-    return [int(row) for row in np.flatnonzero(np.abs(_gram(matrix).U.diagonal()) < _PIVOT)]
-
-
-def _gaps(matrix: Matrix, values: Array, row: int, suspects: Sequence[int]) -> tuple[float, float]:
-    """How far a row, and its value, are from a combination of the rows that are no suspects."""
-    others = np.setdiff1d(np.arange(matrix.shape[0]), np.array(suspects))
-    basis, target = matrix[others], matrix[[row]].toarray().ravel()
-    combination, rest = np.zeros(len(others)), target
-    if len(others):
-        factors = _gram(basis)
-        for _ in range(3):  # iterative refinement: A A' has the square of A's condition
-            combination = combination + factors.solve(basis @ rest)
-            rest = target - basis.T @ combination
-    return float(np.linalg.norm(rest)), float(abs(values[others] @ combination - values[row]))
+    distances, gaps = [], []
+    for some in np.array_split(rows, -(-len(rows) // _AT_ONCE)):
+        targets = matrix[some].toarray().T
+        padded = np.concatenate([targets, np.zeros((len(others), len(some)))])
+        combinations = factors.solve(padded)[width:]
+        distances.append(np.linalg.norm(targets - basis.T @ combinations, axis=0))
+        gaps.append(np.abs(values[others] @ combinations - values[some]))
+    return np.concatenate(distances), np.concatenate(gaps)

@@ -70,6 +70,12 @@ class StageGroup:
     rows: Rows
     sums: SX
 
+    def __post_init__(self) -> None:
+        """Refuse symbols without a variable each: they would stand for their neighbours'."""
+        given, wanted = len(self.columns), self.variables.numel()
+        if given != wanted:
+            raise ValueError(f"{wanted} symbols of a stage need as many variables, got {given}")
+
     @property
     def stages(self) -> int:
         """At how many stages the function is evaluated."""

@@ -3,18 +3,18 @@
 Shared by the certificate and the mesh error; imports no casadi.
 """
 
+from solver.numeric.curves import MalformedCurves, PhaseCurves, Samples
 from solver.numeric.phase import Along, along, dynamics, evaluate
 from solver.numeric.quadrature import Integral, gauss, integrate
 from solver.numeric.tape import Array
-from solver.numeric.trajectory import MalformedCurves, Samples, Trajectory
 
 __all__ = [
     "Along",
     "Array",
     "Integral",
     "MalformedCurves",
+    "PhaseCurves",
     "Samples",
-    "Trajectory",
     "along",
     "dynamics",
     "evaluate",

@@ -1,4 +1,4 @@
-"""Gauss-Legendre quadrature over the segments of a trajectory: fixed, or adaptive."""
+"""Gauss-Legendre quadrature over the segments of published curves: fixed, or adaptive."""
 
 import functools
 from collections.abc import Callable
@@ -9,8 +9,8 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
+from solver.numeric.curves import Index, PhaseCurves, Samples
 from solver.numeric.tape import Array
-from solver.numeric.trajectory import Index, Samples, Trajectory
 
 POINTS = 10
 """Points a panel of the adaptive rule: exact to degree 19."""
@@ -58,7 +58,7 @@ class _Panels:
 
 @np.errstate(invalid="ignore", over="ignore")
 def integrate(
-    trajectory: Trajectory, integrand: Callable[[Samples], Array], tolerance: float = 1e-12
+    curves: PhaseCurves, integrand: Callable[[Samples], Array], tolerance: float = 1e-12
 ) -> Integral:
     """Integrate over time, halving panels until the halves agree with the whole.
 
@@ -69,14 +69,14 @@ def integrate(
     tolerance
         Of each panel, relative to one plus the size of its row's integral.
     """
-    panels = _Panels.whole(trajectory.segments)
-    whole = _rule(trajectory, integrand, panels)
+    panels = _Panels.whole(curves.segments)
+    whole = _rule(curves, integrand, panels)
     value, error = np.zeros(len(whole)), np.zeros(len(whole))
     scale = tolerance * (1 + np.abs(whole.sum(axis=1, keepdims=True)))
-    unsettled = np.ones(trajectory.segments, dtype=bool)
+    unsettled = np.ones(curves.segments, dtype=bool)
     while unsettled.any() and unsettled.sum() <= MAX_PANELS:
         panels = panels.halved(unsettled)
-        halves = _rule(trajectory, integrand, panels)
+        halves = _rule(curves, integrand, panels)
         pairs = halves[:, ::2] + halves[:, 1::2]
         gap = np.abs(pairs - whole)
         # NaN compares false: a panel that has no value will not get one by halving.
@@ -88,11 +88,11 @@ def integrate(
     return Integral(value + whole.sum(axis=1), error + np.abs(whole).sum(axis=1))
 
 
-def _rule(trajectory: Trajectory, integrand: Callable[[Samples], Array], panels: _Panels) -> Array:
+def _rule(curves: PhaseCurves, integrand: Callable[[Samples], Array], panels: _Panels) -> Array:
     """The integral over each panel, (rows, panels)."""
     nodes, weights = gauss(POINTS)
     middle, half = panels.ends.mean(axis=1), np.diff(panels.ends, axis=1)[:, 0] / 2
     s = middle[:, None] + half[:, None] * nodes
-    values = integrand(trajectory.at(np.repeat(panels.segment, POINTS), s.ravel()))
+    values = integrand(curves.at(np.repeat(panels.segment, POINTS), s.ravel()))
     sums = values.reshape(len(values), len(half), POINTS) @ weights
-    return np.asarray(sums * half * trajectory.lengths[panels.segment] / 2)
+    return np.asarray(sums * half * curves.lengths[panels.segment] / 2)

@@ -4,7 +4,7 @@ import numpy as np
 
 from schemas.phases import Phase
 from schemas.results import PhaseResult
-from solver.numeric import Array, Trajectory, dynamics, gauss
+from solver.numeric import Array, PhaseCurves, dynamics, gauss
 
 POINTS, PANELS = 5, 4
 """Gauss-Legendre points on each of equal panels of a segment.
@@ -39,13 +39,13 @@ def segment_errors(phase: Phase, result: PhaseResult) -> Array:
     MalformedCurves
         If the curves cannot be read.
     """
-    trajectory = Trajectory.read(phase, result)
+    curves = PhaseCurves.read(phase, result)
     nodes, weights = gauss(POINTS, PANELS)
-    at = trajectory.grid(nodes)
-    shape = (len(at.x), trajectory.segments, len(nodes))
-    half = trajectory.lengths[:, None] / 2
+    at = curves.grid(nodes)
+    shape = (len(at.x), curves.segments, len(nodes))
+    half = curves.lengths[:, None] / 2
     # Over s in [-1, 1]: no division by a segment's length, which may be zero.
     rates = dynamics(phase.system)(at.t, at.x, at.u).reshape(shape) * half
-    eta = np.abs(trajectory.states.slopes().grid(nodes) - rates) @ weights
-    largest = np.abs(trajectory.states.grid(np.linspace(-1.0, 1.0, 9))).max(axis=(1, 2))
+    eta = np.abs(curves.states.slopes().grid(nodes) - rates) @ weights
+    largest = np.abs(curves.states.grid(np.linspace(-1.0, 1.0, 9))).max(axis=(1, 2))
     return np.asarray(np.max(eta / (1 + largest[:, None]), axis=0))

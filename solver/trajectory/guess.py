@@ -22,11 +22,11 @@ def initial_guess(phase: Phase, guess: Guess) -> Trajectory:
     """
     start, end = _span(phase.start, phase.end)
     times, given = _given(guess, phase.parameters)
-    if len(times) != 2 or (times[0], times[-1]) != (start, end):
-        times = start + (times - times[0]) * (end - start) / (times[-1] - times[0])
+    shares = (times - times[0]) / (times[-1] - times[0])
+    times = start + (end - start) * shares
 
     def curves(names: tuple[str, ...]) -> Array:
-        rows = [given.get(name, _line(phase, name, times)) for name in names]
+        rows = [given.get(name, _line(phase, name, shares)) for name in names]
         return np.array(rows).reshape(len(names), len(times))
 
     return Trajectory(
@@ -67,7 +67,8 @@ def _given(guess: Guess, constants: Mapping[str, float]) -> tuple[Array, dict[st
     return times, {}
 
 
-def _line(phase: Phase, name: str, times: Array) -> Array:
+def _line(phase: Phase, name: str, shares: Array) -> Array:
+    """From the initial to the final value, at shares of the duration from 0 to 1."""
     initial, final = phase.initial[name], phase.final[name]
     if initial.fixed and final.fixed:
         ends = initial.lower, final.lower
@@ -77,8 +78,7 @@ def _line(phase: Phase, name: str, times: Array) -> Array:
         ends = _nearest(initial, final.lower), final.lower
     else:
         ends = _nearest(initial, 0.0), _nearest(final, 0.0)
-    share = (times - times[0]) / (times[-1] - times[0])
-    return np.asarray(ends[0] + (ends[1] - ends[0]) * share)
+    return np.asarray(ends[0] + (ends[1] - ends[0]) * shares)
 
 
 def _nearest(interval: Interval, value: float) -> float:

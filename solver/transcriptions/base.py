@@ -61,7 +61,8 @@ class Transcription(ABC):
     order
         The nominal order: on a smooth problem the error of the objective falls as h^order.
     nodes
-        The nodes of a segment, first and last at its knots, which neighbours share.
+        The nodes of a segment. The first and the last are its knots, which neighbours share;
+        they carry states and controls, since constraints over the ends are stated there.
     weights
         The quadrature weights at the nodes, for a segment of length one.
     """

@@ -1,8 +1,11 @@
 """Schema, registry and documents name the same things; the engine names no robot."""
 
 import re
+from typing import get_args
 
 from schemas.methods import METHODS
+from schemas.problem import SolverSettings
+from solver.backends import BACKENDS
 from solver.transcriptions import TRANSCRIPTIONS
 from tests.architecture.files import ROOT, modules, tracked
 
@@ -18,6 +21,11 @@ def test_every_method_of_the_schema_has_a_transcription() -> None:
 def test_every_method_is_documented() -> None:
     text = "\n".join(path.read_text() for path in tracked() if path.parent == ROOT / "docs")
     assert not {kind for kind in kinds() if f"`{kind}`" not in text}
+
+
+def test_every_backend_of_the_schema_is_there() -> None:
+    named = get_args(SolverSettings.model_fields["backend"].annotation)
+    assert set(named) == set(BACKENDS) == {backend.name for backend in BACKENDS.values()}
 
 
 def test_the_engine_knows_no_robot() -> None:

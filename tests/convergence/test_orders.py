@@ -10,17 +10,12 @@ import pytest
 import examples
 from schemas.reading import read_problem
 from solver import solve
-from solver.transcriptions import TRANSCRIPTIONS, make_transcription
+from solver.transcriptions import make_transcription
+from tests.support.methods import label, variants
 
 OPTIMUM = 0.380797077977881  # x' = x/2 + u, the integral of 5/8 x^2 + 1/2 x u + 1/2 u^2, x0 = T = 1
 BAND = 0.2
 ROUNDING = 1e-12
-
-CASES = [
-    {"kind": "trapezoidal"},
-    {"kind": "hermite_simpson", "form": "separated"},
-    {"kind": "hermite_simpson", "form": "compressed"},
-]
 
 
 def objective(method: dict[str, object], segments: int) -> float:
@@ -35,7 +30,7 @@ def objective(method: dict[str, object], segments: int) -> float:
     return solution.objective
 
 
-@pytest.mark.parametrize("method", CASES, ids=lambda case: "-".join(case.values()))
+@pytest.mark.parametrize("method", variants(), ids=label)
 def test_objective_converges_with_the_nominal_order(method: dict[str, object]) -> None:
     meshes = np.array([4, 8, 16, 32, 64])
     errors = np.array([abs(objective(method, int(n)) - OPTIMUM) for n in meshes])
@@ -44,7 +39,3 @@ def test_objective_converges_with_the_nominal_order(method: dict[str, object]) -
     problem = read_problem(examples.load("linear_quadratic") | {"method": method})
     assert len(usable) == 3
     assert abs(slope - make_transcription(problem.method).order) < BAND
-
-
-def test_every_transcription_is_enrolled() -> None:
-    assert {case["kind"] for case in CASES} == set(TRANSCRIPTIONS)

@@ -9,6 +9,7 @@ import examples
 from schemas.reading import read_problem
 from schemas.results import Solution, SolutionStatus
 from solver import solve
+from tests.support.methods import label, variants
 
 
 @pytest.fixture(scope="module", params=examples.names())
@@ -52,6 +53,18 @@ def test_cart_pole_on_the_papers_mesh(method: dict[str, Any], objective: float) 
     document = examples.load("cart_pole") | {"method": method, "refinement": None}
     solution = solve(read_problem(document))
     assert solution.objective == pytest.approx(objective, abs=1e-7)
+
+
+@pytest.mark.parametrize("method", variants(), ids=label)
+def test_a_closed_form_under_every_method(method: dict[str, Any]) -> None:
+    """003, section 7.7: the least force is 6 - 12 t, its integral of u^2 is 12.
+
+    The coarsest is trapezoidal, 47 h^2 above: its own optimum, and its quadrature of a parabola.
+    """
+    changes = {"method": {**method, "segments": 100}, "refinement": {"tolerance": 1e-4}}
+    solution = solve(read_problem(examples.load("block_min_force") | changes))
+    assert solution.status is SolutionStatus.CONVERGED, solution.message
+    assert solution.objective == pytest.approx(12, rel=5e-4)
 
 
 def test_block_on_the_trapezoidal_mesh() -> None:

@@ -7,7 +7,7 @@ import pytest
 
 from schemas.phases import Phase
 from schemas.problem import Problem
-from solver.numeric import Samples, Trajectory, dynamics, integrate
+from solver.numeric import PhaseCurves, Samples, dynamics, integrate
 from solver.refinement.error import segment_errors
 from tests.support.exact import altered, block_problem, block_result, result
 
@@ -58,23 +58,22 @@ def test_the_stated_quadrature_is_within_two_percent(degree: int) -> None:
     """Of an adaptive one; the integrand has kinks wherever the defect changes its sign."""
     phase = oscillator(damping=0.4)
     published = result({"x": np.sin, "v": np.cos}, {}, np.linspace(0, 6, 14), degree)
-    trajectory, f = Trajectory.read(phase, published), dynamics(phase.system)
-    slopes = trajectory.states.slopes()
+    curves, f = PhaseCurves.read(phase, published), dynamics(phase.system)
+    slopes = curves.states.slopes()
 
     def defect_in(segment: int) -> Callable[[Samples], np.ndarray]:
         def integrand(at: Samples) -> np.ndarray:
-            s = 2 * (at.t - trajectory.breaks[segment]) / trajectory.lengths[segment] - 1
+            s = 2 * (at.t - curves.breaks[segment]) / curves.lengths[segment] - 1
             here = np.abs(s) <= 1
             rate = slopes.at(np.full(len(s), segment), np.clip(s, -1, 1))
-            rate *= 2 / trajectory.lengths[segment]
+            rate *= 2 / curves.lengths[segment]
             return np.abs(rate - f(at.t, at.x, at.u)) * here
 
         return integrand
 
-    scale = 1 + np.abs(trajectory.states.grid(np.linspace(-1, 1, 9))).max(axis=(1, 2))
+    scale = 1 + np.abs(curves.states.grid(np.linspace(-1, 1, 9))).max(axis=(1, 2))
     adaptive = [
-        (integrate(trajectory, defect_in(k), 1e-9).value / scale).max()
-        for k in range(trajectory.segments)
+        (integrate(curves, defect_in(k), 1e-9).value / scale).max() for k in range(curves.segments)
     ]
     assert segment_errors(phase, published) == pytest.approx(adaptive, rel=0.02)
 

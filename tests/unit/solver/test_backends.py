@@ -1,12 +1,17 @@
-"""The backend seam: statuses, the watch, the best iterate."""
+"""The backend seam: what every backend solves, statuses, the watch, the best iterate."""
 
 import time
+from typing import Any
 
 import numpy as np
+import pytest
 
+import examples
+from schemas.results import SolutionStatus
 from solver.backends import BACKENDS, FEASIBLE, NlpStatus, Watch
 from solver.backends.ipopt import STATUSES
 from solver.backends.watch import Iterate, StopCause
+from tests.unit.solver.problems import block, solved
 
 IPOPT_OUTCOMES = {
     "Solve_Succeeded",
@@ -45,8 +50,30 @@ def test_every_outcome_of_ipopt_has_a_neutral_status() -> None:
     assert set(STATUSES.values()) | {NlpStatus.UNBOUNDED} == set(NlpStatus)
 
 
-def test_ipopt_is_available() -> None:
-    assert BACKENDS["ipopt"]().available()
+PROBLEMS: list[tuple[dict[str, Any], SolutionStatus, float | None]] = [
+    (block(), SolutionStatus.CONVERGED, 12.0),
+    (examples.load("linear_quadratic"), SolutionStatus.CONVERGED, 0.380797077977881),
+    (examples.load("double_integrator"), SolutionStatus.CONVERGED, 2.0),
+    (block(phase={"bounds": {"u": [-3, 3]}}), SolutionStatus.LOCALLY_INFEASIBLE, None),
+    (block(solver={"max_iterations": 0}), SolutionStatus.ITERATION_LIMIT, None),
+]
+"""For every backend: a problem, how it ends, and its optimum where it has one."""
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_every_backend_is_available_where_tests_run(backend: str) -> None:
+    assert BACKENDS[backend]().available()
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize(("document", "status", "optimum"), PROBLEMS)
+def test_every_backend(
+    backend: str, document: dict[str, Any], status: SolutionStatus, optimum: float | None
+) -> None:
+    settings = document.get("solver", {}) | {"backend": backend}
+    solution = solved(document | {"solver": settings})
+    assert solution.status is status, solution.message
+    assert optimum is None or solution.objective == pytest.approx(optimum, rel=1e-5)
 
 
 def test_best_is_the_least_violation_until_feasible_then_the_lowest_objective() -> None:

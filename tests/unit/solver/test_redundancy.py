@@ -1,10 +1,21 @@
 """Equalities that follow from others are dropped and reported; contradictions are told apart."""
 
+import time
 from typing import Any
 
 import pytest
 
+import examples
+from schemas.reading import read_problem
 from schemas.results import SolutionStatus
+from solver.mesh import Mesh
+from solver.model import build_model
+from solver.nlp.redundancy import Redundancy, find_redundancy
+from solver.nlp.scaling import typical_scaling
+from solver.nlp.task import NlpTask
+from solver.trajectory import initial_guess
+from solver.transcribe import transcribe
+from solver.transcriptions import make_transcription
 from tests.unit.solver.problems import block, solved
 
 
@@ -48,3 +59,58 @@ def test_a_contradiction_is_kept_and_named() -> None:
 
 def test_an_ordinary_problem_loses_nothing() -> None:
     assert solved(block()).warnings == []
+
+
+def found(document: dict[str, Any]) -> Redundancy:
+    problem = read_problem(document)
+    model = build_model(problem)
+    meshes = [Mesh.uniform(problem.method.segments) for _ in model.phases]
+    guesses = [initial_guess(phase, problem.guess) for phase in model.phases]
+    program = transcribe(model, make_transcription(problem.method), meshes, guesses).program
+    scaling = typical_scaling(program)
+    return find_redundancy(program, scaling, NlpTask.of(program, scaling).nlp)
+
+
+def in_free_time(*boundary: str, segments: int = 10) -> dict[str, Any]:
+    """The double integrator of free final time, with expressions that shall be zero at its ends."""
+    document = examples.load("double_integrator")
+    document["phases"][0]["boundary"] = [
+        {"name": f"row{index}", "expression": expression, "lower": 0, "upper": 0}
+        for index, expression in enumerate(boundary)
+    ]
+    return document | {"method": {"kind": "hermite_simpson", "segments": segments}}
+
+
+@pytest.mark.parametrize(
+    ("boundary", "names"),
+    [
+        ((), ()),
+        (("duration - 2",), ()),
+        (("duration - 2", "2*duration - 4"), ("boundary row1",)),
+        (("final.u + duration - 1", "2*final.u + 2*duration - 2"), ("boundary row1",)),
+    ],
+)
+def test_a_time_that_all_rows_share(boundary: tuple[str, ...], names: tuple[str, ...]) -> None:
+    assert found(in_free_time(*boundary)).names == names
+
+
+def test_a_free_time_costs_no_more_than_a_fixed_one() -> None:
+    """Its column would fill A A': the cube of 8000 rows is minutes, not a tenth of a second."""
+    began = time.perf_counter()
+    assert found(in_free_time(segments=2000)).names == ()
+    assert time.perf_counter() - began < 5
+
+
+def test_one_at_every_node_is_named_once() -> None:
+    path = {"name": "twice", "expression": "u - 2*u + u", "lower": 0, "upper": 0}
+    redundancy = found(block(phase={"path": [path]}))
+    assert redundancy.names == ("path twice",)
+    assert len(redundancy.rows) > 10
+
+
+def test_a_model_without_a_value_near_its_guess_is_left_alone() -> None:
+    rows = [
+        {"name": name, "expression": "sqrt(-1 - final.v^2)", "lower": 0, "upper": 0}
+        for name in ("a", "b")
+    ]
+    assert found(block(phase={"boundary": rows})).names == ()

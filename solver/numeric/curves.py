@@ -43,7 +43,7 @@ class Pieces:
 
 @dataclass(frozen=True, slots=True)
 class Samples:
-    """Points of a trajectory: time (n,), states (n_x, n), controls (n_u, n)."""
+    """Points of a phase: time (n,), states (n_x, n), controls (n_u, n)."""
 
     t: Array
     x: Array
@@ -51,7 +51,7 @@ class Samples:
 
 
 @dataclass(frozen=True, slots=True)
-class Trajectory:
+class PhaseCurves:
     """States and controls over the segments between ``breaks`` (segments + 1,), in seconds."""
 
     breaks: Array

@@ -1,0 +1,61 @@
+"""What every transcription promises (``solver.transcriptions.base``), whichever it is."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from pydantic import TypeAdapter
+
+from footfall.curves import Curves
+from schemas.methods import Method
+from schemas.results import SolutionStatus
+from solver.transcriptions import Transcription, make_transcription
+from tests.support.methods import label, variants
+from tests.unit.solver.problems import block, solved
+
+
+@pytest.fixture(params=variants(), ids=label)
+def method(request: pytest.FixtureRequest) -> dict[str, Any]:
+    return dict(request.param)
+
+
+@pytest.fixture
+def transcription(method: dict[str, Any]) -> Transcription:
+    return make_transcription(TypeAdapter(Method).validate_python(method))
+
+
+def test_nodes_run_from_knot_to_knot(transcription: Transcription) -> None:
+    first, *_, last = transcription.nodes
+    assert (first.fraction, last.fraction) == (0, 1)
+    assert np.all(np.diff(transcription.fractions) > 0)
+
+
+def test_the_knots_carry_states_and_controls(transcription: Transcription) -> None:
+    """Ends, linkages and path constraints are stated over the variables there."""
+    first, *_, last = transcription.nodes
+    assert all((first.state, first.control, last.state, last.control))
+
+
+def test_the_weights_integrate_a_straight_line(transcription: Transcription) -> None:
+    weights = np.array(transcription.weights)
+    assert weights.shape == transcription.fractions.shape
+    assert weights.sum() == pytest.approx(1)
+    assert weights @ transcription.fractions == pytest.approx(1 / 2)
+
+
+def test_constraints_over_the_ends_hold_on_the_curves_through_the_nodes(
+    method: dict[str, Any],
+) -> None:
+    rows = [
+        {"name": side, "expression": f"{side}.u", "lower": value, "upper": value}
+        for side, value in (("initial", 5), ("final", -4))
+    ]
+    document = block(phase={"boundary": rows}, method={**method, "segments": 8}, refinement=None)
+    solution = solved(document | {"certificate": {"tolerance": 0.1}})
+    assert solution.status is SolutionStatus.CONVERGED
+    (phase,) = solution.phases
+    assert [phase.groups["controls"].values["u"][at] for at in (0, -1)] == pytest.approx([5, -4])
+    for name, group in phase.groups.items():
+        curves = Curves.from_dict(phase.curves[name].model_dump())
+        for series, values in group.values.items():
+            assert curves[series](group.time) == pytest.approx(values, abs=1e-7)
