@@ -33,5 +33,41 @@ class HermiteSimpson(Posted):
     control: Literal["quadratic", "linear"] = "quadratic"
 
 
-Method = Annotated[Trapezoidal | HermiteSimpson, Field(discriminator="kind")]
-METHODS: tuple[type[Posted], ...] = (Trapezoidal, HermiteSimpson)
+class Radau(Posted):
+    """Legendre-Gauss-Radau collocation: state of degree ``points``, order 2 points - 1.
+
+    A control may jump at every knot.
+    """
+
+    kind: Literal["radau"]
+    segments: Segments = 10
+    points: int = Field(default=4, ge=1, le=20, description="Collocation points of a segment.")
+
+
+class ChebyshevLobatto(Posted):
+    """Chebyshev-Lobatto collocation: one polynomial of high degree on each of few segments."""
+
+    kind: Literal["chebyshev_lobatto"]
+    segments: Segments = 1
+    degree: int = Field(default=24, ge=2, le=100, description="Of the polynomials of a segment.")
+
+
+class MultipleShooting(Posted):
+    """Multiple shooting: Runge-Kutta steps of order 4 between knots, which alone have states."""
+
+    kind: Literal["multiple_shooting"]
+    segments: Segments = 20
+    steps: int = Field(default=2, ge=1, le=50, description="Runge-Kutta steps of a segment.")
+
+
+Method = Annotated[
+    Trapezoidal | HermiteSimpson | Radau | ChebyshevLobatto | MultipleShooting,
+    Field(discriminator="kind"),
+]
+METHODS: tuple[type[Posted], ...] = (
+    Trapezoidal,
+    HermiteSimpson,
+    Radau,
+    ChebyshevLobatto,
+    MultipleShooting,
+)

@@ -79,7 +79,7 @@ def solve(
         solved.append(solve_mesh(problem, model, transcription, start, run, publish))
         on_event(_mesh_event(problem, solved))
         publish()
-        start = _next(problem, transcription.order, start, solved[-1])
+        start = _next(problem, transcription.error_order, start, solved[-1])
 
     with run.stage("certify"):
         chosen = choose(solved)

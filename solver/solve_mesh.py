@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.errors import InvalidModel, Issue
+from schemas.phases import Phase
 from schemas.problem import Problem
 from schemas.results import PhaseResult
 from solver.backends import NlpStatus, Outcome, Watch, make_backend
@@ -88,13 +89,18 @@ class _Built:
             outcome=outcome,
             trajectories=trajectories,
             phases=phases,
-            errors=[segment_errors(*pair) for pair in zip(specs, phases, strict=True)],
+            errors=[self._errors(*pair) for pair in zip(specs, phases, strict=True)],
             residuals=ranked_residuals(program, scaling, w, rows),
             redundancy=self.redundancy,
             variables=program.variables.size,
             rows=program.rows,
             seconds=time.monotonic() - self.began,
         )
+
+    def _errors(self, spec: Phase, result: PhaseResult) -> Array:
+        """The error of each segment: the largest of its pieces."""
+        errors = segment_errors(spec, result).reshape(-1, self.transcription.pieces)
+        return np.asarray(errors.max(axis=1))
 
 
 def solve_mesh(

@@ -14,8 +14,6 @@ from solver.backends.base import Backend, NlpStatus, Outcome
 from solver.backends.watch import FEASIBLE, Iterate, StopCause, Watch
 from solver.nlp.task import NlpTask
 
-_UNBOUNDED = -1e12  # an objective below this at a feasible point has no lower end
-
 STATUSES: Mapping[str, NlpStatus] = MappingProxyType(
     {
         "Solve_Succeeded": NlpStatus.OPTIMAL,
@@ -37,6 +35,12 @@ STATUSES: Mapping[str, NlpStatus] = MappingProxyType(
 """What IPOPT returns -> the neutral status. Anything else is a fault of the engine."""
 
 _ENDED_EARLY = (NlpStatus.STOPPED, NlpStatus.TIME_LIMIT, NlpStatus.ITERATION_LIMIT)
+
+_CAUSES = {
+    StopCause.REQUEST: NlpStatus.STOPPED,
+    StopCause.DEADLINE: NlpStatus.TIME_LIMIT,
+    StopCause.UNBOUNDED: NlpStatus.UNBOUNDED,
+}
 
 
 class Ipopt(Backend):
@@ -111,12 +115,8 @@ def _options(settings: SolverSettings, watch: Watch, *, warm: bool) -> dict[str,
 def _status(raw: str, final: Iterate, watch: Watch) -> NlpStatus:
     """The table, told apart further by what the iterate and the watch know."""
     status = STATUSES[raw]
-    if status is NlpStatus.STOPPED and watch.cause is StopCause.DEADLINE:
-        return NlpStatus.TIME_LIMIT
-    largest = float(np.max(np.abs(final.z), initial=1.0))
-    met = final.violation <= FEASIBLE * largest
-    if status is NlpStatus.DIVERGED and met and final.objective < _UNBOUNDED:
-        return NlpStatus.UNBOUNDED
+    if status is NlpStatus.STOPPED and watch.cause is not None:
+        return _CAUSES[watch.cause]
     if status is NlpStatus.ACCEPTABLE and final.violation > FEASIBLE:
         return NlpStatus.INFEASIBLE
     return status

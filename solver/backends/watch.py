@@ -14,6 +14,9 @@ Array = NDArray[np.float64]
 FEASIBLE = 1e-6
 """Scaled violation below which an iterate counts as feasible when the best one is chosen."""
 
+_BOTTOMLESS = 1e9
+"""A feasible objective so many times below the size of the first one has no lower end."""
+
 
 def _let_go(_: object) -> None:
     """Keep nothing."""
@@ -24,6 +27,7 @@ class StopCause(StrEnum):
 
     DEADLINE = "deadline"
     REQUEST = "request"
+    UNBOUNDED = "unbounded"
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +69,7 @@ class Watch:
     best: Iterate | None = None
     cause: StopCause | None = None
     fault: Exception | None = None
+    first: float | None = None
     iterations: int = field(default=-1)
 
     def remaining(self) -> float:
@@ -89,6 +94,15 @@ class Watch:
                 self.cause = StopCause.REQUEST
         except Exception as error:  # noqa: BLE001 - kept and raised again outside of the solver
             self.fault = error
+        if self.cause is None and self._bottomless(iterate):
+            self.cause = StopCause.UNBOUNDED
         if self.cause is None and self.remaining() <= 0:
             self.cause = StopCause.DEADLINE
         return self.cause is not None or self.fault is not None
+
+    def _bottomless(self, iterate: Iterate) -> bool:
+        """Whether the objective falls without limit; solvers would follow it to their own."""
+        if self.first is None:
+            self.first = iterate.objective
+        low = iterate.objective < -_BOTTOMLESS * (1 + abs(self.first))
+        return low and iterate.violation <= FEASIBLE

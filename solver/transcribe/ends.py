@@ -7,14 +7,15 @@ import casadi as ca
 import numpy as np
 
 from solver.expressions import SX, evaluate
-from solver.model import Interval, Model, Phase
+from solver.model import Interval, Model
 from solver.model.symbolic import Ends, PhaseFunctions, boundary_scope, objective_scope
 from solver.nlp.stages import Rows, StageGroup
 from solver.nlp.variables import Array, Variables
 from solver.trajectory import Trajectory
 from solver.transcribe.integrals import classify, guessed_integrals
 from solver.transcribe.layout import PhaseLayout
-from solver.transcribe.segments import limit_magnitude
+from solver.transcribe.segments import limit_magnitude, symbolic_stage
+from solver.transcriptions.base import Transcription
 
 _SHORTEST = 1e-6  # s: a phase of free times keeps its direction
 
@@ -52,18 +53,22 @@ class _Row:
 def join_ends(
     model: Model,
     layouts: Sequence[PhaseLayout],
+    transcription: Transcription,
     functions: Sequence[PhaseFunctions],
     guesses: Sequence[Trajectory],
     variables: Variables,
 ) -> Joint:
     """Build the group; lifted integrals are added to ``variables``."""
-    sides = [_phase_ends(layout) for layout in layouts]
-    pairs = list(zip(model.phases, sides, strict=True))
-    scopes = [boundary_scope(phase, side.ends) for phase, side in pairs]
+    sides = [
+        _phase_ends(layout, transcription, own)
+        for layout, own in zip(layouts, functions, strict=True)
+    ]
+    pairs = list(zip(layouts, sides, strict=True))
+    scopes = [boundary_scope(layout.phase, side.ends) for layout, side in pairs]
     rows = [
         row
-        for (phase, side), scope in zip(pairs, scopes, strict=True)
-        for row in _rows(phase, side.ends, scope)
+        for (layout, side), scope in zip(pairs, scopes, strict=True)
+        for row in _rows(layout, side.ends, scope)
     ]
     objective = _objective(model, scopes)
     integrals = ca.vertcat(SX(0, 1), *(side.ends.integrals for side in sides))
@@ -92,13 +97,24 @@ def join_ends(
     return Joint(group, weights, tuple(names[position][1] for position in use.lifted))
 
 
-def _phase_ends(layout: PhaseLayout) -> _PhaseEnds:
-    phase, knots, times = layout.phase, layout.knot_columns(), layout.time_symbols()
-    x = (SX.sym("x0", len(phase.states)), SX.sym("x1", len(phase.states)))
-    u = (SX.sym("u0", len(phase.controls)), SX.sym("u1", len(phase.controls)))
-    ends = Ends(x, u, (times.start, times.end), SX.sym("integral", len(phase.integrals)))
-    columns = [*knots[:, 0].tolist(), *knots[:, -1].tolist(), *layout.free_times()]
-    return _PhaseEnds(ends, ca.vertcat(x[0], u[0], x[1], u[1], times.free), columns)
+def _phase_ends(
+    layout: PhaseLayout, transcription: Transcription, functions: PhaseFunctions
+) -> _PhaseEnds:
+    """The ends as the transcription completes them, over all variables of both end segments."""
+    times, knots, columns = layout.time_symbols(), layout.mesh.knots, layout.segment_columns()
+    first, last = (
+        symbolic_stage(layout, times, SX([start, end - start]), transcription, functions)
+        for start, end in (knots[:2], knots[-2:])
+    )
+    points = first.collocation.points[0], last.collocation.points[-1]
+    ends = Ends(
+        x=(points[0].x, points[1].x),
+        u=(points[0].u, points[1].u),
+        t=(times.start, times.end),
+        integrals=SX.sym("integral", len(layout.phase.integrals)),
+    )
+    where = [*columns[:, 0].tolist(), *columns[:, -1].tolist(), *layout.free_times()]
+    return _PhaseEnds(ends, ca.vertcat(first.own, last.own, times.free), where)
 
 
 def _pick(symbols: SX, positions: Sequence[int]) -> SX:
@@ -111,7 +127,8 @@ def _objective(model: Model, scopes: Sequence[Mapping[str, SX]]) -> SX:
     return evaluate(model.objective, objective_scope(model, scopes))
 
 
-def _rows(phase: Phase, ends: Ends, scope: Mapping[str, SX]) -> list[_Row]:
+def _rows(layout: PhaseLayout, ends: Ends, scope: Mapping[str, SX]) -> list[_Row]:
+    phase = layout.phase
     rows = [
         _Row(f"boundary {row.name}", evaluate(row.tree, scope), row.limits)
         for row in phase.boundary
@@ -119,7 +136,19 @@ def _rows(phase: Phase, ends: Ends, scope: Mapping[str, SX]) -> list[_Row]:
     if phase.end.lower <= phase.start.upper:
         limits = Interval(_SHORTEST, float("inf"))
         rows.append(_Row("positive duration", ends.t[1] - ends.t[0], limits))
-    return rows
+    return [*rows, *_initial_controls(layout, ends)]
+
+
+def _initial_controls(layout: PhaseLayout, ends: Ends) -> list[_Row]:
+    """Limits of controls at the start where the method has no variable there."""
+    phase = layout.phase
+    if len(layout.controls[0]):
+        return []
+    return [
+        _Row(f"initial {name}", ends.u[0][i], phase.initial[name])
+        for i, name in enumerate(phase.controls)
+        if np.any(np.isfinite(phase.initial[name]))
+    ]
 
 
 def _lift(variables: Variables, phase: int, name: str, guess: float) -> int:

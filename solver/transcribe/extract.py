@@ -18,12 +18,12 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class _Nodes:
-    """A phase at all nodes of all segments: x, f, u, q (segments, nodes, names)."""
+    """A phase at all nodes of all segments: x, f, u (segments, nodes, names); its integrals."""
 
     x: Array
     f: Array
     u: Array
-    q: Array
+    integrals: Array
 
 
 def extract(
@@ -59,14 +59,18 @@ def _evaluate(transcribed: Transcribed, index: int, count: int, w: Array) -> _No
         """(names, segments * nodes) -> (segments, nodes, names)."""
         return np.moveaxis(matrix.reshape(len(matrix), segments, count), 0, 2)
 
-    return _Nodes(*(turned(output.full()) for output in outputs))
+    *series, integrals = (output.full() for output in outputs)
+    x, f, u = (turned(matrix) for matrix in series)
+    return _Nodes(x, f, u, integrals.sum(axis=1))
 
 
 def _curves(
     layout: PhaseLayout, transcription: Transcription, nodes: _Nodes, breaks: Array
 ) -> Trajectory:
-    h = np.diff(breaks)[:, None]
-    states = transcription.state_curve(nodes.x, nodes.f, h)
+    states = transcription.state_curve(nodes.x, nodes.f, np.diff(breaks)[:, None])
+    parts = np.full(layout.mesh.segments, transcription.pieces)
+    fractions = layout.mesh.subdivide(parts).knots
+    breaks = breaks[0] + (breaks[-1] - breaks[0]) * fractions
     controls = transcription.control_curve(nodes.u)
     return Trajectory(
         float(breaks[0]),
@@ -79,13 +83,11 @@ def _curves(
 def _result(
     layout: PhaseLayout, transcription: Transcription, nodes: _Nodes, trajectory: Trajectory
 ) -> PhaseResult:
-    phase, knots = layout.phase, trajectory.states.breaks
-    duration = trajectory.end - trajectory.start
+    phase, duration = layout.phase, trajectory.end - trajectory.start
     times = trajectory.start + duration * layout.mesh.fractions(transcription.fractions)
-    integrals = np.einsum("kni,n,k->i", nodes.q, np.array(transcription.weights), np.diff(knots))
     return PhaseResult(
         name=phase.name,
-        knots=knots.tolist(),
+        knots=(trajectory.start + duration * layout.mesh.knots).tolist(),
         groups={
             "states": _group(phase.states, times, nodes.x),
             "controls": _group(phase.controls, times, nodes.u),
@@ -95,7 +97,8 @@ def _result(
             "controls": CurveGroup.model_validate(trajectory.controls.to_dict()),
         },
         integrals={
-            name: finite(value) for name, value in zip(phase.integrals, integrals, strict=True)
+            name: finite(value)
+            for name, value in zip(phase.integrals, nodes.integrals, strict=True)
         },
     )
 

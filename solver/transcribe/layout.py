@@ -1,6 +1,6 @@
 """Where a phase's decision variables stand: the one map between trajectories and vectors."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import casadi as ca
@@ -12,7 +12,7 @@ from solver.model import Interval, Phase
 from solver.nlp.scaling import typical_size
 from solver.nlp.variables import Array, Indices, Variables
 from solver.trajectory import Trajectory
-from solver.transcriptions.base import Transcription
+from solver.transcriptions.base import Node, Transcription
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +56,7 @@ class PhaseLayout:
         return np.concatenate([array for pair in pairs for array in pair])
 
     def knot_columns(self) -> Indices:
-        """States and controls at the knots, (variables, segments + 1)."""
+        """States and controls at the knots, (variables, segments + 1); controls as shared."""
         first = np.concatenate([self.states[0], self.controls[0]])
         last = np.concatenate([self.states[-1], self.controls[-1]])
         return np.concatenate([first, last[:, -1:]], axis=1)
@@ -92,16 +92,26 @@ class Layouter:
         dense = self.mesh.fractions(np.linspace(0.0, 1.0, 5)).ravel()
         state_scale = self._sizes(phase.states, guess.sample_states(dense))
         control_scale = self._sizes(phase.controls, guess.sample_controls(dense))
-        states, controls = [], []
-        fractions = self.mesh.fractions(transcription.fractions)
-        for node, at in zip(transcription.nodes[:-1], fractions.T[:-1], strict=True):
-            last = [1.0] if node.fraction == 0.0 else []
-            where = np.concatenate([at, last])
-            x, u = guess.sample_states(where), guess.sample_controls(where)
-            states.append(self._block(phase.states, where, x, state_scale, node.state))
-            controls.append(self._block(phase.controls, where, u, control_scale, node.control))
+        nodes, fractions = transcription.nodes, self.mesh.fractions(transcription.fractions)
+        states = [
+            self._block(phase.states, where, guess.sample_states(where), state_scale)
+            if node.state
+            else _nothing(self.mesh)
+            for node, where in _places(nodes, fractions, shared=True)
+        ]
+        controls = [
+            self._block(phase.controls, where, guess.sample_controls(where), control_scale)
+            if node.control
+            else _nothing(self.mesh)
+            for node, where in _places(nodes, fractions, shared=transcription.shares_controls)
+        ]
         return PhaseLayout(
-            phase, self.mesh, _shared(states), _shared(controls), (start, end), state_scale
+            phase,
+            self.mesh,
+            _per_node(states, shared=True),
+            _per_node(controls, shared=transcription.shares_controls),
+            (start, end),
+            state_scale,
         )
 
     def _time(self, name: str, limits: Interval, guess: float) -> int | None:
@@ -120,12 +130,8 @@ class Layouter:
         limits = [[side for table in tables for side in table[name]] for name in names]
         return typical_size(np.array(limits).reshape(len(names), 6), samples)
 
-    def _block(
-        self, names: tuple[str, ...], where: Array, guess: Array, scale: Array, carries: bool
-    ) -> Indices:
+    def _block(self, names: tuple[str, ...], where: Array, guess: Array, scale: Array) -> Indices:
         """Variables of one node of every segment; with the end's limits at the phase's ends."""
-        if not carries:
-            return np.empty((0, len(where)), dtype=int)
         lower, upper = (np.empty_like(guess) for _ in range(2))
         for row, name in enumerate(names):
             lower[row], upper[row] = self.phase.bounds[name]
@@ -136,7 +142,23 @@ class Layouter:
         return self.variables.add(self.index, names, where, (lower, upper), guess, scale)
 
 
-def _shared(blocks: list[Indices]) -> tuple[Indices, ...]:
-    """Per node of a segment: the knots' block serves as first and as last node."""
+def _places(
+    nodes: Sequence[Node], fractions: Array, *, shared: bool
+) -> Iterator[tuple[Node, Array]]:
+    """Each block's node, and where in the phase it stands; shared knots are one block."""
+    columns = list(fractions.T)
+    if shared:
+        columns = [np.append(columns[0], 1.0), *columns[1:-1]]
+    yield from zip(nodes, columns, strict=not shared)
+
+
+def _per_node(blocks: Sequence[Indices], *, shared: bool) -> tuple[Indices, ...]:
+    """Per node of a segment; a block of shared knots serves as first and as last node."""
+    if not shared:
+        return tuple(blocks)
     knots, *inner = blocks
     return (knots[:, :-1], *inner, knots[:, 1:])
+
+
+def _nothing(mesh: Mesh) -> Indices:
+    return np.empty((0, mesh.segments), dtype=int)

@@ -10,16 +10,15 @@ from solver.model import Constraint, Interval
 from solver.model.symbolic import PhaseFunctions
 from solver.nlp.stages import Rows, StageGroup
 from solver.nlp.variables import Array, Indices
-from solver.transcribe.layout import PhaseLayout
+from solver.transcribe.layout import PhaseLayout, TimeSymbols
 from solver.transcriptions.base import Collocation, Point, Segment, Transcription
 
 
 @dataclass(frozen=True, slots=True)
-class _Stage:
-    """A segment in symbols, completed by the transcription."""
+class SymbolicStage:
+    """A segment in symbols, completed by the transcription; ``own`` are its variables."""
 
-    variables: SX
-    constants: SX
+    own: SX
     h: SX
     collocation: Collocation
 
@@ -35,16 +34,13 @@ def segment_group(
 
     ``weights`` (sums, integrals) says what each integral adds to each sum of the program.
     """
-    stage = _symbolic_stage(layout, transcription, functions)
-    points = stage.collocation.points
-    quadrature = stage.h * sum(
-        weight * functions.integrands(point.x, point.u, point.t)
-        for weight, point in zip(transcription.weights, points, strict=True)
-    )
+    place, times = SX.sym("place", 2), layout.time_symbols()
+    stage = symbolic_stage(layout, times, place, transcription, functions)
+    quadrature = _quadrature(stage, functions)
     return StageGroup(
         phase=index,
-        variables=stage.variables,
-        constants=stage.constants,
+        variables=ca.vertcat(stage.own, times.free),
+        constants=place,
         columns=_with_times(layout.segment_columns(), layout),
         data=np.stack([layout.mesh.knots[:-1], np.diff(layout.mesh.knots)]),
         rows=_segment_rows(layout, transcription, functions, stage.collocation),
@@ -55,24 +51,37 @@ def segment_group(
 def segment_nodes(
     layout: PhaseLayout, transcription: Transcription, functions: PhaseFunctions
 ) -> ca.Function:
-    """Segment's variables, constants -> x, f, u (names, nodes), lengths and quadratures."""
-    stage = _symbolic_stage(layout, transcription, functions)
+    """Segment's variables, constants -> x, f, u (names, nodes), and its integrals (integrals,)."""
+    place, times = SX.sym("place", 2), layout.time_symbols()
+    stage = symbolic_stage(layout, times, place, transcription, functions)
     points = stage.collocation.points
     outputs = [
         ca.horzcat(*(point.x for point in points)),
         ca.horzcat(*(functions.derivatives(point.x, point.u, point.t) for point in points)),
         ca.horzcat(*(point.u for point in points)),
-        ca.horzcat(*(functions.integrands(point.x, point.u, point.t) for point in points)),
+        _quadrature(stage, functions),
     ]
-    return ca.Function("nodes", [stage.variables, stage.constants], outputs)
+    return ca.Function("nodes", [ca.vertcat(stage.own, times.free), place], outputs)
+
+
+def _quadrature(stage: SymbolicStage, functions: PhaseFunctions) -> SX:
+    """The integrals over one segment, by the transcription's own rule."""
+    return stage.h * sum(
+        weight * functions.integrands(point.x, point.u, point.t)
+        for weight, point in stage.collocation.quadrature
+    )
 
 
 def knot_group(
-    index: int, layout: PhaseLayout, functions: PhaseFunctions, sums: int
+    index: int,
+    layout: PhaseLayout,
+    transcription: Transcription,
+    functions: PhaseFunctions,
+    sums: int,
 ) -> list[StageGroup]:
-    """Path constraints at the knots; nothing where the phase has none."""
+    """Path constraints at shared knots; nothing where there are none of either."""
     path = layout.phase.path
-    if not path:
+    if not path or not transcription.shares_controls:
         return []
     times, fraction = layout.time_symbols(), SX.sym("fraction")
     x = SX.sym("x", len(layout.phase.states))
@@ -89,11 +98,18 @@ def _with_times(columns: Indices, layout: PhaseLayout) -> Indices:
     return np.concatenate([columns, np.repeat(times, columns.shape[1], axis=1)])
 
 
-def _symbolic_stage(
-    layout: PhaseLayout, transcription: Transcription, functions: PhaseFunctions
-) -> _Stage:
-    times = layout.time_symbols()
-    fraction, width = SX.sym("fraction"), SX.sym("width")
+def symbolic_stage(
+    layout: PhaseLayout,
+    times: TimeSymbols,
+    place: SX,
+    transcription: Transcription,
+    functions: PhaseFunctions,
+) -> SymbolicStage:
+    """A segment's symbols, completed by the transcription.
+
+    ``place`` (2,) is where it starts in the phase and its width, as fractions of the duration.
+    """
+    fraction, width = ca.vertsplit(place)
     points = tuple(
         Point(
             SX.sym("x", states.shape[0]),
@@ -108,9 +124,8 @@ def _symbolic_stage(
     collocation = transcription.collocate(
         Segment(points, h, lambda point: functions.derivatives(point.x, point.u, point.t))
     )
-    own = [part for point in points for part in (point.x, point.u)]
-    variables = ca.vertcat(*own, times.free)
-    return _Stage(variables, ca.vertcat(fraction, width), h, collocation)
+    own = ca.vertcat(*(part for point in points for part in (point.x, point.u)))
+    return SymbolicStage(own, h, collocation)
 
 
 def _segment_rows(
@@ -132,8 +147,13 @@ def _segment_rows(
             np.repeat(middles, collocation.defects.numel(), axis=0),
         )
     ]
-    inner = list(zip(transcription.nodes, collocation.points, strict=True))[1:-1]
-    for node, point in inner:
+    last = len(transcription.nodes) - 1
+    for index, (node, point) in enumerate(
+        zip(transcription.nodes, collocation.points, strict=True)
+    ):
+        at_knot = index in (0, last)
+        if at_knot and (transcription.shares_controls or not node.control):
+            continue
         where = layout.mesh.fractions(np.array([node.fraction])).T
         if phase.path:
             parts.append(_path_rows(phase.path, functions.path(point.x, point.u, point.t), where))

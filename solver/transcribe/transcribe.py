@@ -47,11 +47,11 @@ def transcribe(
         )
     )
     functions = tuple(phase_functions(phase) for phase in model.phases)
-    joint = join_ends(model, layouts, functions, guesses, variables)
+    joint = join_ends(model, layouts, transcription, functions, guesses, variables)
     groups, nodes, segments = [], [], []
     for index, (layout, own) in enumerate(zip(layouts, functions, strict=True)):
         segments.append(segment_group(index, layout, transcription, own, joint.weights[index]))
-        groups.extend(knot_group(index, layout, own, len(joint.lifted) + 1))
+        groups.extend(knot_group(index, layout, transcription, own, len(joint.lifted) + 1))
         nodes.append(segment_nodes(layout, transcription, own))
     program = Program(variables, (*segments, *groups, joint.group), joint.lifted)
     return Transcribed(program, layouts, tuple(nodes), tuple(segments))

@@ -8,7 +8,6 @@ enrol it from there.
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,10 +46,21 @@ class Segment:
 
 @dataclass(frozen=True, slots=True)
 class Collocation:
-    """A segment completed: all its points, and the defects (in the states' units) to vanish."""
+    """A segment completed.
+
+    Attributes
+    ----------
+    points
+        The points at all nodes.
+    defects
+        What shall vanish, in the states' units; a whole number of times the states.
+    quadrature
+        Weights and points whose weighted sum, times h, integrates along the segment.
+    """
 
     points: tuple[Point, ...]
     defects: SX
+    quadrature: tuple[tuple[float, Point], ...]
 
 
 class Transcription(ABC):
@@ -60,21 +70,36 @@ class Transcription(ABC):
     ----------
     order
         The nominal order: on a smooth problem the error of the objective falls as h^order.
+        None where a method converges by its degree instead.
+    error_order
+        The mesh error of a segment falls as h^error_order; refinement counts on it.
     nodes
-        The nodes of a segment. The first and the last are its knots, which neighbours share;
-        they carry states and controls, since constraints over the ends are stated there.
+        The nodes of a segment. The first and the last are its knots, which carry states that
+        neighbours share. The last one carries controls, too.
+    shares_controls
+        Whether neighbours share the controls of their common knot; else a control may jump
+        there, and the first node carries none.
     weights
-        The quadrature weights at the nodes, for a segment of length one.
+        The quadrature weights at the nodes, for a segment of length one; for ``weighted``.
+    pieces
+        Polynomials of a curve on each segment.
     """
 
-    order: ClassVar[int]
+    order: int | None
+    error_order: int
+    shares_controls: bool = True
     nodes: tuple[Node, ...]
-    weights: tuple[float, ...]
+    weights: tuple[float, ...] = ()
+    pieces: int = 1
 
     @property
     def fractions(self) -> Array:
         """The nodes' places in [0, 1]."""
         return np.array([node.fraction for node in self.nodes])
+
+    def weighted(self, points: tuple[Point, ...]) -> tuple[tuple[float, Point], ...]:
+        """The quadrature of ``weights`` over the nodes."""
+        return tuple(zip(self.weights, points, strict=True))
 
     @abstractmethod
     def collocate(self, segment: Segment) -> Collocation:
@@ -90,6 +115,8 @@ class Transcription(ABC):
             States and their derivatives at the nodes, shape (segments, nodes, states).
         h
             Lengths of the segments in seconds, shape (segments, 1).
+
+        Where there are several ``pieces``, they count as segments of the result.
         """
 
     @abstractmethod

@@ -21,7 +21,7 @@ class HermiteSimpson(Transcription):
         ``quadratic`` through the midpoint, or ``linear`` between knots (no overshoot).
     """
 
-    order = 4
+    order = error_order = 4
     weights = (1 / 6, 4 / 6, 1 / 6)
 
     def __init__(
@@ -46,7 +46,7 @@ class HermiteSimpson(Transcription):
         )
         simpson = b.x - a.x - h / 6 * (fa + 4 * segment.derivative(m) + fb)
         defects = [m.x - hermite, simpson] if self.separated else [simpson]
-        return Collocation((a, m, b), ca.vertcat(*defects))
+        return Collocation((a, m, b), ca.vertcat(*defects), self.weighted((a, m, b)))
 
     def state_curve(self, x: Array, f: Array, h: Array) -> Array:
         """Cubic from the state at the start and the three slopes (7.13.5)."""

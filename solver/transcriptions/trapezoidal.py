@@ -10,7 +10,7 @@ from solver.transcriptions.base import Array, Collocation, Node, Segment, Transc
 class Trapezoidal(Transcription):
     """Control and derivative piecewise linear, state piecewise quadratic; order 2."""
 
-    order = 2
+    order = error_order = 2
     nodes = (Node(0.0), Node(1.0))
     weights = (1 / 2, 1 / 2)
 
@@ -18,7 +18,8 @@ class Trapezoidal(Transcription):
         """The change of the state is the trapezoid rule over its derivative (7.9)."""
         a, b = segment.points
         mean = (segment.derivative(a) + segment.derivative(b)) / 2
-        return Collocation(segment.points, b.x - a.x - segment.h * mean)
+        defects = b.x - a.x - segment.h * mean
+        return Collocation(segment.points, defects, self.weighted(segment.points))
 
     def state_curve(self, x: Array, f: Array, h: Array) -> Array:
         """Quadratic from the state at the start and the two slopes (7.13.3)."""

@@ -72,3 +72,21 @@ def test_block_on_the_trapezoidal_mesh() -> None:
     method = {"kind": "trapezoidal", "segments": 25}
     document = examples.load("block_min_force") | {"method": method, "refinement": None}
     assert solve(read_problem(document)).objective == pytest.approx(12.0749614, abs=1e-6)
+
+
+SMOOTH = ["block_min_force", "cart_pole", "linear_quadratic", "pendulum_torque", "quadrotor"]
+HIGH_ORDER = [
+    {"kind": "radau", "segments": 15, "points": 5},
+    {"kind": "chebyshev_lobatto", "degree": 40},
+    {"kind": "multiple_shooting", "segments": 60},
+]
+
+
+@pytest.mark.parametrize("name", SMOOTH)
+@pytest.mark.parametrize("method", HIGH_ORDER, ids=lambda method: method["kind"])
+def test_every_method_meets_the_same_optimum(name: str, method: dict[str, Any]) -> None:
+    document = examples.load(name) | {"method": method}
+    solution = solve(read_problem(document))
+    assert solution.status is SolutionStatus.CONVERGED, solution.message
+    known = document["known"][0]["value"]
+    assert solution.objective == pytest.approx(known, rel=1e-6)

@@ -1,27 +1,37 @@
 """Every method of the language with every choice of its options, for tests that run them all."""
 
 import itertools
+from collections.abc import Mapping
 from typing import Any, Literal, get_args, get_origin
+
+from pydantic.fields import FieldInfo
 
 from schemas.methods import METHODS
 
+NUMBERS: Mapping[str, tuple[int, ...]] = {"points": (2, 3), "degree": (6,), "steps": (1, 3)}
+"""What tests try of options that are numbers; a new one stands here."""
+
 
 def variants() -> list[dict[str, Any]]:
-    """A method's fields of named choices, in all combinations; numbers keep their defaults."""
+    """Every method with all combinations of its options; ``segments`` is left to the test."""
     return [
-        dict(zip(choices, values, strict=True))
+        dict(zip(options, values, strict=True))
         for method in METHODS
         if (
-            choices := {
-                name: get_args(field.annotation)
+            options := {
+                name: _choices(name, field)
                 for name, field in method.model_fields.items()
-                if get_origin(field.annotation) is Literal
+                if name != "segments"
             }
         )
-        for values in itertools.product(*choices.values())
+        for values in itertools.product(*options.values())
     ]
+
+
+def _choices(name: str, field: FieldInfo) -> tuple[Any, ...]:
+    return get_args(field.annotation) if get_origin(field.annotation) is Literal else NUMBERS[name]
 
 
 def label(method: dict[str, Any]) -> str:
     """A name for a test's parameter."""
-    return "-".join(method.values())
+    return "-".join(map(str, method.values()))

@@ -9,7 +9,9 @@ from pydantic import TypeAdapter
 from footfall.curves import Curves
 from schemas.methods import Method
 from schemas.results import SolutionStatus
+from solver.expressions import SX
 from solver.transcriptions import Transcription, make_transcription
+from solver.transcriptions.base import Point, Segment
 from tests.support.methods import label, variants
 from tests.unit.solver.problems import block, solved
 
@@ -31,16 +33,21 @@ def test_nodes_run_from_knot_to_knot(transcription: Transcription) -> None:
 
 
 def test_the_knots_carry_states_and_controls(transcription: Transcription) -> None:
-    """Ends, linkages and path constraints are stated over the variables there."""
+    """Neighbours share the states; the controls where the transcription says so."""
     first, *_, last = transcription.nodes
-    assert all((first.state, first.control, last.state, last.control))
+    assert all((first.state, last.state, last.control))
+    assert first.control == transcription.shares_controls
 
 
-def test_the_weights_integrate_a_straight_line(transcription: Transcription) -> None:
-    weights = np.array(transcription.weights)
-    assert weights.shape == transcription.fractions.shape
-    assert weights.sum() == pytest.approx(1)
-    assert weights @ transcription.fractions == pytest.approx(1 / 2)
+def test_the_quadrature_integrates_a_straight_line(transcription: Transcription) -> None:
+    points = tuple(
+        Point(SX.zeros(int(node.state)), SX.zeros(int(node.control)), SX(node.fraction))
+        for node in transcription.nodes
+    )
+    segment = Segment(points, SX(1), lambda point: SX.zeros(point.x.shape))
+    quadrature = transcription.collocate(segment).quadrature
+    assert sum(weight for weight, _ in quadrature) == pytest.approx(1)
+    assert sum(weight * float(point.t) for weight, point in quadrature) == pytest.approx(1 / 2)
 
 
 def test_constraints_over_the_ends_hold_on_the_curves_through_the_nodes(
@@ -54,7 +61,8 @@ def test_constraints_over_the_ends_hold_on_the_curves_through_the_nodes(
     solution = solved(document | {"certificate": {"tolerance": 0.1}})
     assert solution.status is SolutionStatus.CONVERGED
     (phase,) = solution.phases
-    assert [phase.groups["controls"].values["u"][at] for at in (0, -1)] == pytest.approx([5, -4])
+    ends = [phase.groups["controls"].values["u"][at] for at in (0, -1)]
+    assert ends == pytest.approx([5, -4], abs=1e-6)
     for name, group in phase.groups.items():
         curves = Curves.from_dict(phase.curves[name].model_dump())
         for series, values in group.values.items():
