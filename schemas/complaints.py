@@ -10,20 +10,19 @@ from typing import Any
 
 from pydantic_core import ErrorDetails
 
+from schemas.base import Posted
 from schemas.errors import Issue
 from schemas.expressions.errors import quoted
+from schemas.phases import Phase
 from schemas.pointers import Part, pointer
 from schemas.problem import Problem
 from schemas.suggest import did_you_mean
+from schemas.systems import Ode
 
 Schema = dict[str, Any]
 Writer = Callable[[ErrorDetails, list[Part], Schema], Issue]
 
 _PLAIN = {
-    "model_type": "expected an object, {...}",
-    "model_attributes_type": "expected an object, {...}",
-    "dict_type": "expected an object, {...}",
-    "list_type": "expected a list, [...]",
     "string_type": "expected a text",
     "int_type": "expected a whole number",
     "int_from_float": "expected a whole number",
@@ -31,6 +30,21 @@ _PLAIN = {
     "float_type": "expected a number",
     "float_parsing": "expected a number",
 }
+_GIVEN: dict[type, str] = {
+    dict: "an object",
+    list: "a list",
+    str: "a text",
+    bool: "true or false",
+    int: "a number",
+    float: "a number",
+    type(None): "null",
+}
+_MAXIMIZE = 'to maximize, minimize the negative: {"minimize": "-(...)"}'
+_HOMES: tuple[tuple[type[Posted], str], ...] = (
+    (Ode, "a phase's 'system'"),
+    (Phase, "a phase, an entry of 'phases'"),
+    (Problem, "the problem itself"),
+)
 
 
 def issue_of(error: ErrorDetails) -> Issue:
@@ -53,14 +67,48 @@ def _plain(message: str) -> str:
     return message.replace("Input should be", "expected a number" if comparison else "expected")
 
 
-def _missing(_: ErrorDetails, parts: list[Part], __: Schema) -> Issue:
-    return Issue(pointer(*parts), f"the field '{parts[-1]}' is missing")
+def _missing(_: ErrorDetails, parts: list[Part], schema: Schema) -> Issue:
+    hint = f'write "{parts[-1]}": "{schema["const"]}"' if "const" in schema else ""
+    return Issue(pointer(*parts), f"the field '{parts[-1]}' is missing", hint)
 
 
 def _unknown(_: ErrorDetails, parts: list[Part], schema: Schema) -> Issue:
     word, fields = str(parts[-1]), list(schema.get("properties", ()))
-    hint = did_you_mean(word, fields) or "the fields here are " + ", ".join(fields)
+    hint = _MAXIMIZE if word == "maximize" and "minimize" in fields else _home(word)
+    hint = hint or did_you_mean(word, fields) or "the fields here are " + ", ".join(fields)
     return Issue(pointer(*parts), f"unknown field {quoted(word)}", hint)
+
+
+def _home(word: str) -> str:
+    """Where a field that is unknown here is known."""
+    home = next((where for model, where in _HOMES if word in model.model_fields), "")
+    return f"it belongs into {home}" if home else ""
+
+
+def _object(error: ErrorDetails, parts: list[Part], schema: Schema) -> Issue:
+    message = f"expected an object, {{...}}, got {_given(error)}"
+    return Issue(pointer(*parts), message, _as_object(error["input"], schema))
+
+
+def _as_object(given: Any, schema: Schema) -> str:
+    """How what was given may have been meant."""
+    kinds = schema.get("discriminator", {}).get("mapping", {})
+    if kinds:
+        kind = given if isinstance(given, str) and given in kinds else next(iter(kinds))
+        return f'write {{"kind": "{kind}"}}; the kinds are {", ".join(kinds)}'
+    fields = list(schema.get("properties", ()))
+    if len(fields) == 1:
+        return f'write {{"{fields[0]}": ...}}'
+    return "the fields are " + ", ".join(fields) if fields else 'each under its name: {"x": ...}'
+
+
+def _list(error: ErrorDetails, parts: list[Part], _: Schema) -> Issue:
+    message = f"expected a list, [...], got {_given(error)}"
+    return Issue(pointer(*parts), message, "put it in brackets; commas stand between the items")
+
+
+def _given(error: ErrorDetails) -> str:
+    return _GIVEN.get(type(error["input"]), "something else")
 
 
 def _kind(error: ErrorDetails, parts: list[Part], schema: Schema) -> Issue:
@@ -99,6 +147,10 @@ def _too_long(error: ErrorDetails, parts: list[Part], _: Schema) -> Issue:
 
 
 _WRITERS: dict[str, Writer] = {
+    "model_type": _object,
+    "model_attributes_type": _object,
+    "dict_type": _object,
+    "list_type": _list,
     "missing": _missing,
     "extra_forbidden": _unknown,
     "union_tag_invalid": _kind,

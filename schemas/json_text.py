@@ -10,6 +10,10 @@ from schemas.expressions.errors import quoted
 from schemas.limits import MODEL_LIMITS
 from schemas.pointers import Part, pointer
 
+_MEND = (
+    "names and texts stand in double quotes, commas between items and none after the last; "
+    "there are no comments"
+)
 _LONGEST_INTEGER = 310  # digits; a longer one is infinite as a float
 
 
@@ -33,7 +37,7 @@ def decode(data: bytes | str) -> tuple[Any, Issue | None]:
         if not error.doc.strip():
             return None, Issue("", "the document is empty", "send a problem as JSON")
         place = f"line {error.lineno}, column {error.colno}"
-        return None, Issue("", f"not JSON: {error.msg} at {place}")
+        return None, Issue("", f"not JSON: {error.msg} at {place}", _MEND)
     except RecursionError:
         return None, _too_deep()
 

@@ -79,6 +79,12 @@ class Bound:
         """Check one raw JSON value: a scalar, or ``[lower, upper]`` with null for open."""
         if isinstance(raw, cls):
             return raw
+        if raw is None or isinstance(raw, dict | bool):
+            raise PydanticCustomError(
+                "bound",
+                "expected a number, a constant expression, or a pair [lower, upper]",
+                {"hint": "null opens one side of a pair: [0, null]"},
+            )
         if not isinstance(raw, list | tuple):
             value = Scalar.read(raw)
             return cls(value, value)

@@ -2,8 +2,17 @@
 "use strict";
 
 const byId = (id) => document.getElementById(id);
-const POLL_MS = 2000;
+const POLL_MS = { idle: 2000, busy: 500 };
 let examples = [];
+let busy = false;
+let shown = Promise.resolve(); // the problem in the editor is the chosen one
+
+class Refusal extends Error {
+  constructor(body, status) {
+    super(body?.detail ?? `HTTP ${status}`);
+    this.issues = body?.errors ?? [];
+  }
+}
 
 async function call(path, options = {}) {
   const headers = { ...options.headers };
@@ -13,7 +22,7 @@ async function call(path, options = {}) {
   byId("key-form").hidden = response.status !== 401;
   const text = await response.text();
   const body = text ? JSON.parse(text) : null;
-  if (!response.ok) throw new Error(body?.detail ?? `HTTP ${response.status}`);
+  if (!response.ok) throw new Refusal(body, response.status);
   return body;
 }
 
@@ -44,21 +53,44 @@ function actions(job) {
   return cell;
 }
 
-function row(job) {
-  const made = document.createElement("tr");
-  const created = new Date(job.created).toLocaleString();
-  const ended = job.error ? job.error.message : job.solution_status ?? "";
-  for (const text of [job.name, job.status, ended, progress(job), created]) {
-    made.append(element("td", text));
-  }
-  made.append(actions(job));
+function cell(text, small) {
+  const made = element("td", text);
+  if (small) made.append(element("small", small));
   return made;
+}
+
+function row(job) {
+  const made = element("tr", "", { id: job.id });
+  const ended = job.error ? job.error.message : (job.solution_status ?? "").replaceAll("_", " ");
+  const objective = job.progress?.objective;
+  const value = job.solution_status && objective != null ? `objective ${objective.toPrecision(8)}` : "";
+  made.append(
+    cell(job.name, job.id),
+    cell(job.status, progress(job)),
+    cell(ended, value),
+    cell(new Date(job.created).toLocaleString()),
+    actions(job),
+  );
+  return made;
+}
+
+// What has not changed stays in place, so that a button keeps its focus and its click.
+function showRows(made) {
+  const shown = [...byId("jobs").rows];
+  const same = shown.length === made.length && shown.every((old, i) => old.id === made[i].id);
+  if (!same) return byId("jobs").replaceChildren(...made);
+  shown.forEach((old, i) => {
+    [...made[i].cells].forEach((cell, j) => {
+      if (!old.cells[j].isEqualNode(cell)) old.cells[j].replaceWith(cell);
+    });
+  });
 }
 
 async function showJobs() {
   const page = await call("/v1/jobs?limit=20");
-  byId("jobs").replaceChildren(...page.jobs.map(row));
+  showRows(page.jobs.map(row));
   byId("no-jobs").hidden = page.jobs.length > 0;
+  busy = page.jobs.some((job) => job.links.cancel);
 }
 
 async function showState() {
@@ -74,28 +106,43 @@ async function showExamples() {
   examples = (await call("/v1/examples")).examples;
   const options = examples.map((one) => element("option", one.title, { value: one.name }));
   byId("example").replaceChildren(...options);
-  describe();
+  await (shown = showProblem());
 }
 
-function describe() {
+async function showProblem() {
   const chosen = examples.find((one) => one.name === byId("example").value);
   byId("about").textContent = chosen ? chosen.description : "";
+  const problem = chosen ? await call(`/v1/examples/${encodeURIComponent(chosen.name)}`) : {};
+  byId("problem").value = JSON.stringify(problem, null, 2);
 }
 
 async function post() {
-  const name = encodeURIComponent(byId("example").value);
-  const problem = await call(`/v1/examples/${name}`);
+  await shown;
   const headers = { "Content-Type": "application/json" };
-  const job = await call("/v1/jobs", { method: "POST", headers, body: JSON.stringify(problem) });
+  const body = byId("problem").value;
+  const job = await call("/v1/jobs", { method: "POST", headers, body });
   byId("answer").textContent = `Queued as ${job.id}.`;
 }
 
+function showIssues(issues) {
+  const place = (one) => [one.pointer, one.column && `column ${one.column}`].filter(Boolean).join(", ");
+  const lines = issues.map((one) => {
+    const made = element("li", `${place(one) || "/"}: ${one.message}`);
+    if (one.hint) made.append(element("small", one.hint));
+    return made;
+  });
+  byId("issues").replaceChildren(...lines);
+}
+
 async function attempt(action) {
+  showIssues([]);
   try {
     await action();
     await showJobs();
   } catch (error) {
-    byId("answer").textContent = error.message;
+    const issues = error.issues ?? [];
+    byId("answer").textContent = issues.length ? "The problem is refused:" : error.message;
+    showIssues(issues);
   }
 }
 
@@ -103,7 +150,7 @@ async function start() {
   await Promise.allSettled([showExamples(), showState(), showJobs()]);
 }
 
-byId("example").addEventListener("change", describe);
+byId("example").addEventListener("change", () => attempt(() => (shown = showProblem())));
 byId("post-form").addEventListener("submit", (event) => {
   event.preventDefault();
   attempt(post);
@@ -113,7 +160,8 @@ byId("key-form").addEventListener("submit", (event) => {
   sessionStorage.setItem("key", byId("key").value);
   start();
 });
-setInterval(() => {
-  if (!document.hidden) Promise.allSettled([showState(), showJobs()]);
-}, POLL_MS);
-start();
+async function watch() {
+  if (!document.hidden) await Promise.allSettled([showState(), showJobs()]);
+  setTimeout(watch, busy ? POLL_MS.busy : POLL_MS.idle);
+}
+start().then(watch);

@@ -12,6 +12,7 @@ from schemas.problem import Problem
 from schemas.suggest import did_you_mean
 
 _SHOWN = 12
+_TIMES = frozenset({"time", "t_final", "tfinal", "tf", "t_f", "T"})
 
 
 def check(problem: Problem) -> Iterator[Issue]:
@@ -36,10 +37,13 @@ def _hint(name: str, place: Place) -> str:
         return elsewhere
     if name.lower() in ("nan", "inf", "infinity"):
         return "infinities have no name; leave an open limit out, or write null"
-    near = did_you_mean(name, sorted(place.visible))
+    if name in _TIMES:
+        along = "t" in place.visible
+        return "the time is t" if along else "the final time is final.t, the time taken duration"
+    some = sorted(place.visible, key=lambda word: (word.count("."), word))
+    near = did_you_mean(name, some)
     if near:
         return near
-    some = sorted(place.visible)
     return "known here: " + ", ".join(some[:_SHOWN]) + (", ..." if len(some) > _SHOWN else "")
 
 

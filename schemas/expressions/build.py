@@ -18,6 +18,14 @@ _OTHER_NAMES = {
     "arctan2": "atan2(y, x)",
     "log2": "log(x)/log(2)",
     "norm": "hypot(x, y)",
+    "sec": "1/cos(x)",
+    "csc": "1/sin(x)",
+    "cot": "1/tan(x)",
+    **dict.fromkeys(("radians", "deg2rad"), "x*pi/180"),
+    **dict.fromkeys(("degrees", "rad2deg"), "x*180/pi"),
+    **dict.fromkeys(
+        ("integral", "integrate"), "it into the phase's 'integrals', under a name to be used here"
+    ),
 }
 _DERIVATIVES = frozenset({"d", "dd", "ddd", "dddd"})
 

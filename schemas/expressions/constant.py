@@ -9,6 +9,8 @@ from schemas.expressions.tokens import MAX_CONSTANT
 from schemas.expressions.tree import Name, Number, Tree
 from schemas.suggest import did_you_mean
 
+_OPEN = frozenset({"free", "open", "none", "inf", "infinity", "nan"})
+
 
 def _sum(*terms: float) -> float:
     total = terms[0]
@@ -80,8 +82,16 @@ def constant(tree: Tree, names: Mapping[str, float]) -> float:
             raise ExpressionError(
                 f"{quoted(tree.name)} is not a constant that is known here",
                 tree.column,
-                did_you_mean(tree.name, names) or "a constant may use the parameters before it",
+                _constant_hint(tree.name, names),
             )
         return names[tree.name]
     values = [constant(argument, names) for argument in tree.arguments]
     return apply(tree.function, values, tree.column)
+
+
+def _constant_hint(name: str, names: Mapping[str, float]) -> str:
+    if name.lower() in _OPEN:
+        return "null is open: write a pair such as [0, null]"
+    near = did_you_mean(name, names)
+    some = ": " + ", ".join(list(names)[:12]) if names else ""
+    return near or f"a constant may use pi and the parameters before it{some}"

@@ -7,6 +7,8 @@ and balanced parentheses of a bounded depth, and nothing else.
 from schemas.expressions.errors import ExpressionError, quoted
 from schemas.expressions.tokens import MAX_DEPTH, TOO_LARGE, Token
 
+_DEGREES = frozenset({"deg", "degree", "degrees"})
+
 
 def check_order(tokens: list[Token]) -> None:
     """Hold the tokens to the order: values and operators take turns, parentheses match.
@@ -68,7 +70,9 @@ def _missing_operator(before: Token, token: Token) -> ExpressionError:
         hint = "name an intermediate in 'define' instead"
         return ExpressionError("functions cannot be defined here", before.column, hint)
     hint = "to multiply, write *"
-    if token.text != "(" and before.text != ")":
+    if token.text in _DEGREES:
+        hint = "angles are in radians: write 90*pi/180 for 90 degrees"
+    elif token.text != "(" and before.text != ")":
         hint = f"to multiply, write {quoted(before.text)[1:-1]}*{quoted(token.text)[1:-1]}"
     return ExpressionError(
         f"an operator is missing between '{before.text[-60:]}' and '{token.text[:60]}'",

@@ -9,6 +9,7 @@ Names are loaded when they are first used, so that importing the package costs n
 """
 
 from importlib import import_module
+from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -56,6 +57,8 @@ _HOMES = {
 def __getattr__(name: str) -> Any:
     if name == "errors":
         return import_module("footfall.errors")
+    if name == "__version__":
+        return version("footfall")
     if name not in _HOMES:
         raise AttributeError(f"module 'footfall' has no attribute {name!r}")
     return getattr(import_module(f"footfall.{_HOMES[name]}"), name)

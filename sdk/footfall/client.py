@@ -105,8 +105,10 @@ class Client:
         transport: httpx.BaseTransport | None = None,
     ) -> None:
         headers = {"Authorization": f"Bearer {key}"} if key else {}
-        http = httpx.Client(base_url=url, headers=headers, timeout=timeout, transport=transport)
-        self.url = url
+        self.url = url.rstrip("/").removesuffix("/v1")  # some will name the versioned path
+        http = httpx.Client(
+            base_url=self.url, headers=headers, timeout=timeout, transport=transport
+        )
         self._timeout = timeout
         self._transport = Transport(http, retries or Retries())
 

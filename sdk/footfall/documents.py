@@ -11,6 +11,11 @@ from footfall.errors import BadFile
 Problem = Mapping[str, Any] | str | Path
 """A problem: the document itself, or the path of a JSON file ("-": standard input)."""
 
+_MEND = (
+    "Names and texts stand in double quotes, commas between items and none after the last; "
+    "there are no comments."
+)
+
 
 def read_problem(source: Problem) -> dict[str, Any]:
     """The problem as a dict; a path is read. Raises ``BadFile``."""
@@ -89,7 +94,8 @@ def _place(text: str, error: json.JSONDecodeError) -> str:
     line = text.splitlines()[error.lineno - 1] if error.lineno <= len(text.splitlines()) else ""
     start = max(0, error.colno - 60)
     caret = " " * (error.colno - 1 - start) + "^"
-    return f"line {error.lineno}, column {error.colno}:\n  {line[start : start + 90]}\n  {caret}"
+    shown = line[start : start + 90]
+    return f"line {error.lineno}, column {error.colno}:\n  {shown}\n  {caret}\n{_MEND}"
 
 
 def _kind(document: Any) -> str:

@@ -193,6 +193,8 @@ def from_httpx(error: Exception, url: str) -> FootfallError:
     """Our error for one of httpx's; the nearest class of the table decides."""
     kind = next(HTTPX_ERRORS[cls] for cls in type(error).__mro__ if cls in HTTPX_ERRORS)
     words = str(error) or type(error).__name__
+    if isinstance(error, httpx.UnsupportedProtocol | httpx.InvalidURL):
+        return kind(f"{url} is not the address of a service.", "Write http://HOST:PORT.")
     if issubclass(kind, ConnectionFailed):
         hint = "Is the service running? 'footfall serve' starts one; --server says where it is."
         return kind(f"No service answered at {url}: {words}", hint)

@@ -33,7 +33,7 @@ def in_words(result: Mapping[str, Any]) -> str:
 
 def summarize(result: Mapping[str, Any]) -> str:
     """Status, objective, mesh, certificate, and what stands out."""
-    mesh = result["mesh_refinement"]["iterations"]
+    mesh = published_mesh(result)
     solver, timing = result["solver"], result["timing"]
     lines = [
         f"{result['name']}: {words(result['status'])}",
@@ -44,15 +44,21 @@ def summarize(result: Mapping[str, Any]) -> str:
         f"  time         {timing['total']:.2f} s",
     ]
     if mesh:
-        last = mesh[-1]
-        error = f"largest error {number(last['max_error'], 3)}"
-        lines.insert(4, f"  mesh         {plural(last['segments'], 'segment')}, {error}")
+        error = f"largest error {number(mesh['max_error'], 3)}"
+        lines.insert(4, f"  mesh         {plural(mesh['segments'], 'segment')}, {error}")
     if solver["residuals"] and result["status"] != "converged":
         worst = solver["residuals"][0]
         lines.append(f"  worst        {worst['name']}: {number(worst['value'], 3)}{place(worst)}")
     lines += [f"  warning: {text}" for text in result.get("warnings", [])]
     lines += [f"  advice: {text}" for text in result.get("advice", [])]
     return "\n".join(lines)
+
+
+def published_mesh(result: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The mesh of the published curves: not the last one where that ended worse than before."""
+    segments = sum(len(phase["knots"]) - 1 for phase in result["phases"])
+    meshes = reversed(result["mesh_refinement"]["iterations"])
+    return next((mesh for mesh in meshes if mesh["segments"] == segments), {})
 
 
 def mesh_table(result: Mapping[str, Any]) -> str:

@@ -16,6 +16,7 @@ import pytest
 
 import examples
 from footfall import Client, Event
+from footfall.cli import main
 from footfall.errors import BadProblem, UnknownJob
 from tests.support.service import wait_until
 
@@ -96,6 +97,33 @@ def test_the_gallery_and_bad_problems(client: Client) -> None:
     assert (issue.pointer, issue.column) == ("/objective/minimize", 1)
     with pytest.raises(BadProblem, match="effort"):
         client.submit(problem)
+
+
+def test_the_command_lists_the_jobs(
+    service: tuple[str, int], client: Client, capsys: pytest.CaptureFixture[str]
+) -> None:
+    job = client.submit(examples.load("block_min_force"))
+    client.wait(job.id, timeout=60)
+    assert main(["jobs", "--limit", "1", "--server", service[0]]) == 0
+    said = capsys.readouterr().out
+    for word in (job.id, "block move", "succeeded", "converged"):
+        assert word in said
+    assert main(["jobs", "--json", "--server", service[0]]) == 0
+    assert job.id in {known["id"] for known in json.loads(capsys.readouterr().out)}
+
+
+def test_a_model_without_a_value_is_explained_like_a_bad_problem(
+    service: tuple[str, int], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    problem = examples.load("block_min_force")
+    problem["phases"][0]["integrals"] = {"effort": "log(u - 100)"}
+    path = tmp_path / "p.json"
+    path.write_text(json.dumps(problem | {"objective": {"minimize": "effort"}}))
+    assert main(["solve", str(path), "--server", service[0]]) == 2
+    said = capsys.readouterr()
+    assert not said.out
+    assert f"{path}: /phases/0/integrals/effort: has no finite value" in said.err
+    assert said.err.count("has no finite value") == 1
 
 
 def test_a_cancelled_job_keeps_its_best_iterate(client: Client) -> None:

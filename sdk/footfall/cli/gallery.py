@@ -3,6 +3,8 @@
 import argparse
 import difflib
 import json
+import shutil
+from textwrap import shorten
 from typing import Any
 
 from footfall import local
@@ -11,8 +13,6 @@ from footfall.cli.output import show_json
 from footfall.client import Client
 from footfall.errors import BadFile
 from footfall.summary import table
-
-_WIDTH = 70
 
 
 def examples(options: argparse.Namespace) -> int:
@@ -25,7 +25,11 @@ def examples(options: argparse.Namespace) -> int:
     if options.json:
         show_json(entries)
     else:
-        rows = [[entry["name"], _short(entry["description"])] for entry in entries]
+        room = shutil.get_terminal_size().columns - 2 - max(len(entry["name"]) for entry in entries)
+        rows = [
+            [entry["name"], shorten(entry["description"], max(room, 40), placeholder=" ...")]
+            for entry in entries
+        ]
         print(table(["example", "what it is"], rows, left=2))
     return codes.CONVERGED
 
@@ -54,7 +58,3 @@ def _one(options: argparse.Namespace) -> dict[str, Any]:
 
 def _client(options: argparse.Namespace) -> Client:
     return Client(options.server, options.environment.get("FOOTFALL_KEY"))
-
-
-def _short(text: str) -> str:
-    return text if len(text) <= _WIDTH else text[: _WIDTH - 3].rstrip() + "..."

@@ -3,15 +3,17 @@
 import argparse
 import sys
 from collections.abc import Mapping
+from itertools import islice
 from typing import Any
 
 from footfall.cli import codes
-from footfall.cli.output import deliver, explain, note, show_json
+from footfall.cli.output import check_places, deliver, note, refuse, show_json
 from footfall.cli.progress import progress
 from footfall.client import Client, Job
 from footfall.documents import read_json
 from footfall.errors import BadProblem, NoResult
 from footfall.result import Result
+from footfall.summary import table, words
 
 
 def client(options: argparse.Namespace) -> Client:
@@ -23,26 +25,28 @@ def submit(options: argparse.Namespace) -> int:
     """Queue a problem and print the job's id; with --watch go on to its result."""
     problem = read_json(options.file)
     if options.watch:
+        check_places(options.output, options.report)
         return solve_through(options, problem)
-    with client(options) as service:
-        job = _submitted(service, problem, options)
-    if job is None:
-        return codes.BAD_INPUT
-    _show(job, options)
+    try:
+        with client(options) as service:
+            _show(service.submit(problem), options)
+    except BadProblem as error:
+        return refuse(error, problem, options)
     return codes.CONVERGED
 
 
 def solve_through(options: argparse.Namespace, problem: dict[str, Any]) -> int:
     """Submit, follow, print; Ctrl-C cancels the job and keeps its best iterate."""
     with client(options) as service:
-        job = _submitted(service, problem, options)
-        if job is None:
-            return codes.BAD_INPUT
-        note(f"job {job.id}")
         try:
-            return _deliver(_followed(service, job.id), options, problem)
-        except KeyboardInterrupt:
-            return _interrupted(service, job.id, options, problem)
+            job = service.submit(problem)
+            note(f"job {job.id}")
+            try:
+                return _deliver(_followed(service, job.id), options, problem)
+            except KeyboardInterrupt:
+                return _interrupted(service, job.id, options, problem)
+        except BadProblem as error:  # on submission, or when the worker built its model
+            return refuse(error, problem, options)
 
 
 def watch(options: argparse.Namespace) -> int:
@@ -68,14 +72,16 @@ def result(options: argparse.Namespace) -> int:
         return _deliver(service.result(options.id), options)
 
 
-def _submitted(service: Client, problem: dict[str, Any], options: argparse.Namespace) -> Job | None:
-    try:
-        return service.submit(problem)
-    except BadProblem as error:
-        if options.json:
-            raise
-        note(explain(error.issues, problem, options.file))
-        return None
+def jobs(options: argparse.Namespace) -> int:
+    """List the latest jobs, the newest first."""
+    with client(options) as service:
+        latest = list(islice(service.jobs(), options.limit))
+    if options.json:
+        show_json([job.document for job in latest])
+    else:
+        rows = [[j.id, j.name, j.status, words(j.solution_status or "")] for j in latest]
+        print(table(["id", "name", "job", "solution"], rows, left=4))
+    return codes.CONVERGED
 
 
 def _followed(service: Client, job_id: str) -> Result:

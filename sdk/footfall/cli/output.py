@@ -1,6 +1,8 @@
 """What commands print: JSON alone on stdout for programs, words for people."""
 
+import argparse
 import json
+import os
 import sys
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -35,17 +37,17 @@ def deliver(
     report: str | None = None,
     problem: Mapping[str, Any] | None = None,
 ) -> int:
-    """Write the files asked for, print the result, and give the exit code of its status."""
+    """Print the result, write the files asked for, and give the exit code of its status."""
+    if as_json:
+        show_json(result.document)
+    else:
+        print(in_words(result.document), flush=True)
     if output:
         write(output, json.dumps(result.document, allow_nan=False))
         note(f"result written to {output}")
     if report:
         write(report, render(result.document, problem))
         note(f"report written to {report}")
-    if as_json:
-        show_json(result.document)
-    else:
-        print(in_words(result.document))
     return codes.of_status(result.status)
 
 
@@ -57,6 +59,17 @@ def write(path: str, text: str) -> None:
         target.write_text(text, encoding="utf-8")
     except OSError as error:
         raise BadFile(f"{path} cannot be written: {error.strerror}.") from error
+
+
+def check_places(*paths: str | None) -> None:
+    """Raise ``BadFile`` now for a file that could not be written after a long solve."""
+    for target in map(Path, filter(None, paths)):
+        try:
+            target.parent.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise BadFile(f"{target} cannot be written: {error.strerror}.") from error
+        if target.is_dir() or not os.access(target if target.exists() else target.parent, os.W_OK):
+            raise BadFile(f"{target} cannot be written.", "Name a file in a folder of yours.")
 
 
 def complain(error: FootfallError, *, as_json: bool) -> None:
@@ -79,6 +92,14 @@ def issue_json(issue: Issue) -> dict[str, Any]:
         "message": issue.message,
         "hint": issue.hint,
     }
+
+
+def refuse(error: BadProblem, problem: Mapping[str, Any], options: argparse.Namespace) -> int:
+    """Say what is wrong with a problem that was to be solved."""
+    if options.json:
+        raise error
+    note(explain(error.issues, problem, options.file))
+    return codes.BAD_INPUT
 
 
 def explain(issues: Iterable[Issue], document: Mapping[str, Any], name: str) -> str:

@@ -55,7 +55,8 @@ class _Lines:
         if event.type == "mesh":
             return f"mesh {data['mesh'] + 1}: {_mesh_words(data)}"
         if event.type == "state":
-            return f"job {words(data['status'])} {data.get('message', '')}".rstrip()
+            said = "" if data["status"] == "failed" else data.get("message", "")  # an error says it
+            return f"job {words(data['status'])} {said}".rstrip()
         if event.type == "nlp_iteration" and time.monotonic() - self._last >= _EVERY:
             self._last = time.monotonic()
             return f"  iteration {data['iteration']}: {_iteration_words(data)}"

@@ -2,28 +2,35 @@
 
 import argparse
 import sys
-from collections.abc import Mapping
-from typing import Any
 
 from footfall import local
 from footfall.cli import codes, jobs
 from footfall.cli.interrupt import Interrupt
-from footfall.cli.output import deliver, explain, issue_json, note, show_json
+from footfall.cli.output import (
+    check_places,
+    deliver,
+    explain,
+    issue_json,
+    note,
+    refuse,
+    show_json,
+)
 from footfall.cli.progress import progress
 from footfall.documents import read_json
-from footfall.errors import BadProblem, Issue
+from footfall.errors import BadProblem
 
 
 def solve(options: argparse.Namespace) -> int:
     """Solve in this process, or through a service; the first Ctrl-C keeps the best iterate."""
     problem = read_json(options.file)
+    check_places(options.output, options.report)
     if options.server:
         return jobs.solve_through(options, problem)
     try:
         with Interrupt() as interrupt, progress(sys.stderr) as shown:
             result = local.solve(problem, on_event=shown, should_stop=interrupt.asked)
     except BadProblem as error:
-        return refuse(error.issues, problem, options)
+        return refuse(error, problem, options)
     code = deliver(
         result, as_json=options.json, output=options.output, report=options.report, problem=problem
     )
@@ -45,11 +52,3 @@ def validate(options: argparse.Namespace) -> int:
     else:
         print(f"{options.file}: fine")
     return codes.BAD_INPUT if issues else codes.CONVERGED
-
-
-def refuse(issues: list[Issue], problem: Mapping[str, Any], options: argparse.Namespace) -> int:
-    """Say what is wrong with a problem that was to be solved."""
-    if options.json:
-        raise BadProblem(issues)
-    note(explain(issues, problem, options.file))
-    return codes.BAD_INPUT

@@ -1,9 +1,11 @@
 """The words of the command line: commands, options, helps with examples."""
 
 import argparse
+import sys
 from collections.abc import Callable, Mapping
+from importlib.metadata import version
 
-from footfall.cli import gallery, jobs, service, solving
+from footfall.cli import codes, gallery, jobs, service, solving
 from footfall.client import DEFAULT_URL
 
 Run = Callable[[argparse.Namespace], int]
@@ -31,7 +33,14 @@ class _Words:
             epilog=_START,
             formatter_class=argparse.RawDescriptionHelpFormatter,
         )
-        self._commands = self.top.add_subparsers(metavar="COMMAND", required=True)
+        said = f"footfall {version('footfall')}"
+        self.top.add_argument("--version", action="version", version=said)
+        self._commands = self.top.add_subparsers(metavar="COMMAND")
+        self.top.set_defaults(run=self._help, json=False)
+
+    def _help(self, _: argparse.Namespace) -> int:
+        self.top.print_help(sys.stderr)
+        return codes.BAD_INPUT
 
     def command(self, name: str, run: Run, words: str, example: str) -> argparse.ArgumentParser:
         """A command with the options that all have."""
@@ -107,6 +116,8 @@ def _jobs(words: _Words) -> None:
     watch.add_argument("id", help="the job's id")
     for command in (submit, watch):
         _files(command)
+    listed = words.remote("jobs", jobs.jobs, "list your latest jobs", "footfall jobs --limit 5")
+    listed.add_argument("--limit", type=_count, default=20, help="how many (default: 20)")
     cancel = words.remote(
         "cancel", jobs.cancel, "cancel a job; it keeps its best iterate", "footfall cancel ID"
     )

@@ -13,7 +13,7 @@ from footfall.report.markup import Markup, asset, el, join, void
 from footfall.report.plots import plot
 from footfall.report.scales import scientific
 from footfall.report.tables import checks, meshes, pairs, residuals
-from footfall.summary import VERDICTS, plural, words
+from footfall.summary import VERDICTS, plural, published_mesh, words
 
 _STANDING = {"converged": "good", "acceptable": "fair", "cancelled": "quiet"}
 _PARTS = ("build", "solve", "refine", "certify")
@@ -72,13 +72,12 @@ def _document(title: str, body: Markup, data: Markup) -> str:
 
 
 def _header(result: Mapping[str, Any]) -> Markup:
-    meshes_ = result["mesh_refinement"]["iterations"]
-    last = meshes_[-1] if meshes_ else {}
+    mesh = published_mesh(result)
     verdict = result["certificate"]["verdict"]
     facts = {
         "objective": scientific(result["objective"], 10),
-        "largest error": scientific(last.get("max_error"), 3),
-        "mesh": plural(last["segments"], "segment") if last else "\N{EN DASH}",
+        "largest error": scientific(mesh.get("max_error"), 3),
+        "mesh": plural(mesh["segments"], "segment") if mesh else "\N{EN DASH}",
         "certificate": VERDICTS[verdict],
         "time": f"{result['timing']['total']:.2f} s",
     }

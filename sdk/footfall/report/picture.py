@@ -8,7 +8,7 @@ from footfall.report.figures import Figure, mesh_errors, trajectories
 from footfall.report.limits import limits_of
 from footfall.report.markup import Markup, asset, el
 from footfall.report.scales import scientific
-from footfall.summary import VERDICTS, plural, words
+from footfall.summary import VERDICTS, plural, published_mesh, words
 
 _WIDTH, _LEFT, _RIGHT = 960, 76, 36
 _HEAD, _GAP = 116, 74  # above the first frame, and between two frames
@@ -58,11 +58,11 @@ def _frame(figure: Figure, top: int, height: int) -> Markup:
 
 
 def _heading(result: Mapping[str, Any]) -> list[Markup]:
-    meshes = result["mesh_refinement"]["iterations"]
+    mesh = published_mesh(result)
     parts = [words(result["status"]), f"objective {scientific(result['objective'], 8)}"]
-    if meshes:
-        parts.append(plural(meshes[-1]["segments"], "segment"))
-        parts.append(f"largest error {scientific(meshes[-1]['max_error'], 2)}")
+    if mesh:
+        parts.append(plural(mesh["segments"], "segment"))
+        parts.append(f"largest error {scientific(mesh['max_error'], 2)}")
     parts.append(VERDICTS[result["certificate"]["verdict"]])
     return [
         el("text", result["name"], class_="heading", x=_LEFT, y=40),

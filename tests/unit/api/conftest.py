@@ -48,12 +48,14 @@ class Hand:
         error: JobError | None = None,
     ) -> None:
         if result is not None:
-            self.store.results.put(record.id, record.token, orjson.dumps(result), report)
+            self.store.results.put(record.id, record.token, orjson.dumps(result))
         status = result["status"] if result else None
         moved = self.store.jobs.move(
             record.id, to, expect=LIVE, token=record.token, solution_status=status, error=error
         )
         assert moved is not None
+        if report is not None:
+            self.store.results.put_report(record.id, record.token, report)
 
     def solve(self, job_id: str, report: bytes | None = None) -> dict[str, Any]:
         result = block_move()

@@ -56,7 +56,7 @@ class TestResult:
     def test_a_snapshot_of_a_running_job(self, client: AppClient, hand: Hand, store: Store) -> None:
         job_id = post(client)
         record = hand.start(job_id)
-        store.results.snapshot(job_id, record.token, b'{"status": "cancelled"}')
+        store.results.put(job_id, record.token, b'{"status": "cancelled"}')
         assert client.get(f"/v1/jobs/{job_id}/result").status_code == 200
 
     def test_there_never_will_be_one(self, client: AppClient, hand: Hand) -> None:
@@ -181,10 +181,22 @@ class TestReport:
         assert "sandbox allow-scripts" in policy
         assert "allow-same-origin" not in policy
 
-    def test_there_is_none(self, client: AppClient, hand: Hand) -> None:
+    def test_it_is_drawn_here_where_the_worker_has_not(self, client: AppClient, hand: Hand) -> None:
         job_id = post(client)
         hand.solve(job_id)
-        assert client.get(f"/v1/jobs/{job_id}/report.html").status_code == 404
+        reply = client.get(f"/v1/jobs/{job_id}/report.html")
+        assert reply.status_code == 200
+        assert "block move" in reply.text
+
+    def test_there_is_none(self, client: AppClient, hand: Hand) -> None:
+        undrawable = post(client)
+        hand.end(hand.start(undrawable), result={"status": "converged", "phases": 7})
+        without_result = post(client)
+        hand.end(hand.start(without_result), JobStatus.FAILED)
+        for job_id in (undrawable, without_result):
+            reply = client.get(f"/v1/jobs/{job_id}/report.html")
+            assert reply.status_code == 404
+            assert reply.json()["type"] == "/problems/no-result"
 
 
 @pytest.mark.parametrize(

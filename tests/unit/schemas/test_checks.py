@@ -47,6 +47,8 @@ def test_a_name_is_taken_once(path: str, value: Any, pointer: str, message: str)
         (f"{SYSTEM} derivatives v1", "final.q1", "system/derivatives/v1", 1, "the ends"),
         (f"{SYSTEM} derivatives v1", "q1.__class__", "system/derivatives/v1", 1, ""),
         (f"{SYSTEM} derivatives v1", "u + inf", "system/derivatives/v1", 5, "infinities"),
+        (f"{SYSTEM} derivatives v1", "u*time", "system/derivatives/v1", 3, "the time is t"),
+        (f"{PHASE} boundary 0 expression", "tf", "boundary/0/expression", 1, "final.t, the time"),
         (f"{SYSTEM} define s", "sin(q2)/den", "system/define/s", 9, "further down"),
         (f"{SYSTEM} define den", "den + 1", "system/define/den", 1, "further down"),
         (f"{PHASE} path 0 expression", "duration", "path/0/expression", 1, "the ends"),

@@ -134,6 +134,10 @@ def test_walk_goes_from_left_to_right_parents_first() -> None:
         ("2 * \u03c0", 5, "not ASCII", "pi"),
         ("x\u00b2", 2, "not ASCII", "^2"),
         ("x + sine(y)", 5, "no function 'sine'", "did you mean 'sin'?"),
+        ("90deg", 3, "an operator is missing", "90*pi/180"),
+        ("sin(radians(x))", 5, "no function 'radians'", "x*pi/180"),
+        ("sec(x)", 1, "no function 'sec'", "1/cos(x)"),
+        ("integral(u^2)", 1, "no function 'integral'", "'integrals'"),
         ("ln(x)", 1, "no function 'ln'", "log(x)"),
         ("arctan2(y, x)", 1, "no function", "atan2"),
         ("m(1 + 2)", 1, "no function 'm'", "to multiply"),
@@ -207,6 +211,13 @@ def test_unknown_constants_are_placed() -> None:
         constant(parse("2 * mas1"), {"mass1": 1.0})
     assert caught.value.column == 5
     assert caught.value.hint == "did you mean 'mass1'?"
+
+
+@pytest.mark.parametrize("word", ["free", "inf", "Infinity", "None_", "open"])
+def test_words_for_open_are_told_null(word: str) -> None:
+    with pytest.raises(ExpressionError) as caught:
+        constant(parse(word), {})
+    assert ("null is open" in caught.value.hint) == (word != "None_")
 
 
 def test_a_constant_may_fail_on_its_values() -> None:

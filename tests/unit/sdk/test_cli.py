@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 
 import examples
+import footfall
 from footfall import local
 from footfall.cli import main
 from footfall.cli.words import parser
@@ -101,6 +102,7 @@ def test_a_good_problem_is_fine(cart_pole: str, capsys: Captured) -> None:
     ("text", "words"),
     [
         ('{"a": 1,}', "line 1, column 9"),
+        ('{"a": 1,}', "none after the last"),
         ('{"a": NaN}', "NaN is no JSON number"),
         ('{"a": 1, "a": 2}', 'the key "a" comes twice'),
         ("[1]", "a list, not a JSON object"),
@@ -132,6 +134,10 @@ def test_a_dash_reads_standard_input(
 
 def test_a_file_that_cannot_be_written_is_told(cart_pole: str, capsys: Captured) -> None:
     assert main(["solve", cart_pole, "--output", "/proc/nowhere/r.json"]) == 2
+    said = capsys.readouterr().err
+    assert "cannot be written" in said
+    assert "solving" not in said  # it is told before the work, not after
+    assert main(["solve", cart_pole, "--report", "/"]) == 2
     assert "cannot be written" in capsys.readouterr().err
 
 
@@ -148,12 +154,18 @@ def test_no_service_is_a_fault_with_a_mend(
     cart_pole: str, capsys: Captured, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(time, "sleep", lambda _: None)  # the pauses between retries
-    for command in (["submit", cart_pole], ["result", "x"], ["solve", cart_pole]):
+    for command in (["submit", cart_pole], ["result", "x"], ["jobs"], ["solve", cart_pole]):
         assert main([*command, "--server", "http://127.0.0.1:1", "--json"]) == 1
         said = capsys.readouterr()
         assert not said.out
         assert json.loads(said.err)["error"] == "ConnectionFailed"
         assert "footfall serve" in said.err
+
+
+@pytest.mark.parametrize("address", ["127.0.0.1:8000", "nowhere"])
+def test_what_is_no_address_is_told(address: str, capsys: Captured) -> None:
+    assert main(["result", "x", "--server", address]) == 1
+    assert "is not the address of a service" in capsys.readouterr().err
 
 
 def test_doctor_finds_the_engine_and_no_service(capsys: Captured) -> None:
@@ -179,7 +191,7 @@ def test_a_taken_port_is_told_with_a_mend(tmp_path: Path, capsys: Captured) -> N
     assert "--port" in capsys.readouterr().err
 
 
-COMMANDS = ["solve", "validate", "examples", "submit", "watch", "cancel", "result", "serve"]
+COMMANDS = ["solve", "validate", "examples", "submit", "watch", "cancel", "result", "jobs", "serve"]
 
 
 @pytest.mark.parametrize("command", [*COMMANDS, "worker", "doctor"])
@@ -193,10 +205,22 @@ def test_every_command_has_help_with_an_example(command: str, capsys: Captured) 
 
 
 def test_words_that_are_not_commands_are_2(capsys: Captured) -> None:
-    for words in ([], ["dance"], ["serve", "--port", "x"], ["serve", "--workers", "-1"]):
+    for words in (["dance"], ["serve", "--port", "x"], ["serve", "--workers", "-1"]):
         with pytest.raises(SystemExit) as left:
             main(words)
         assert left.value.code == 2
+
+
+def test_the_bare_command_shows_its_help(capsys: Captured) -> None:
+    assert main([]) == 2
+    assert "start here:" in capsys.readouterr().err
+
+
+def test_it_tells_its_version(capsys: Captured) -> None:
+    with pytest.raises(SystemExit) as left:
+        main(["--version"])
+    assert left.value.code == 0
+    assert capsys.readouterr().out == f"footfall {footfall.__version__}\n"
 
 
 def test_the_first_ctrl_c_keeps_the_best_iterate(tmp_path: Path) -> None:

@@ -223,6 +223,13 @@ def test_a_delete_whose_answer_was_lost_is_done() -> None:
     client(handler).delete("j")
 
 
+@pytest.mark.parametrize("url", ["http://service/", "http://service/v1", "http://service/v1/"])
+def test_the_versioned_path_is_no_part_of_the_address(url: str) -> None:
+    handler, seen = script(httpx.Response(200, json=JOB))
+    Client(url, transport=httpx.MockTransport(handler)).job("j")
+    assert str(seen[0].url) == "http://service/v1/jobs/j"
+
+
 def test_the_key_is_sent() -> None:
     handler, seen = script(httpx.Response(200, json=JOB))
     Client("http://service", "secret", transport=httpx.MockTransport(handler)).job("j")

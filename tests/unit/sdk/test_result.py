@@ -9,6 +9,7 @@ import pytest
 
 from footfall import Result
 from footfall.errors import BadFile
+from footfall.summary import published_mesh
 from schemas.results import Solution
 
 
@@ -91,6 +92,16 @@ def test_loading_something_else_is_told(tmp_path: Path) -> None:
     (tmp_path / "p.json").write_text('{"name": "a problem"}')
     with pytest.raises(BadFile, match="no result"):
         Result.load(tmp_path / "p.json")
+
+
+def test_the_mesh_told_is_that_of_the_published_curves(solved: dict[str, Any]) -> None:
+    refinement = solved["mesh_refinement"]
+    worse = refinement["iterations"][-1] | {"segments": 999, "max_error": 0.5}
+    refinement = refinement | {"iterations": [*refinement["iterations"], worse]}
+    assert published_mesh(solved | {"mesh_refinement": refinement})["segments"] == (
+        len(solved["phases"][0]["knots"]) - 1
+    )
+    assert published_mesh(solved | {"phases": []}) == {}
 
 
 def test_the_summary_says_what_matters(result: Result, infeasible: dict[str, Any]) -> None:
