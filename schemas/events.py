@@ -8,10 +8,11 @@ from schemas.base import Strict
 
 
 class StageStarted(Strict):
-    """The pipeline entered a stage."""
+    """The pipeline entered a stage, or begins it anew; ``note`` says why."""
 
     type: Literal["stage"] = "stage"
     stage: Literal["build", "solve", "refine", "certify"]
+    note: str = ""
 
 
 class NlpIteration(Strict):

@@ -4,6 +4,7 @@ Sizes: a series has one number per time of its group; a curve has one row of Che
 coefficients per segment. Units are SI throughout.
 """
 
+import math
 from enum import StrEnum
 from typing import Literal
 
@@ -13,6 +14,11 @@ from schemas.base import Strict
 
 FORMAT = 1
 """The version of this result format; it grows when a field changes its meaning."""
+
+
+def finite(value: float) -> float | None:
+    """A number for JSON: NaN and infinities are null."""
+    return float(value) if math.isfinite(value) else None
 
 
 class SolutionStatus(StrEnum):
@@ -106,16 +112,19 @@ class Certificate(Strict):
 
 
 class Residual(Strict):
-    """A violated constraint: its group's name, phase and time, the violation in its own unit."""
+    """A violated constraint: its group's name, phase and time, the violation in its own unit.
+
+    ``value`` is null where the constraint has no finite value.
+    """
 
     name: str
     phase: str | None
     time: float | None
-    value: float
+    value: float | None
 
 
 class SolverReport(Strict):
-    """What the NLP solver did on the last mesh.
+    """What the NLP solver did on the mesh that is published.
 
     ``residuals`` are ranked, the worst first; ``seconds`` were spent inside of the NLP solver.
     """

@@ -30,4 +30,3 @@ class Ode(Posted):
 
 
 System = Ode
-SYSTEMS: tuple[type[Posted], ...] = (Ode,)

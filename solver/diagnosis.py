@@ -1,4 +1,4 @@
-"""Where a model breaks at its guess: which expression, when, and a pointer into the problem."""
+"""Where a model breaks at its start: which expression, when, and a pointer into the problem."""
 
 from collections.abc import Iterator, Sequence
 
@@ -7,8 +7,10 @@ from numpy.typing import NDArray
 
 from schemas.errors import InvalidModel, Issue
 from schemas.expressions import Expression
-from schemas.phases import Phase
+from schemas.phases import Phase as PhaseSpec
 from schemas.problem import Problem
+from solver.model import Model, Phase
+from solver.nlp.program import Program, RowLabel
 from solver.nlp.task import NlpTask
 from solver.numeric import along
 from solver.trajectory import Trajectory
@@ -21,10 +23,20 @@ _HINT = (
     "Give a guess, or bounds, that keep the motion where this expression has a value "
     "(no division by zero, no root or logarithm of a negative number)."
 )
+_SLOPE_HINT = (
+    "Roots have no slope at zero: keep the motion away from there by bounds or ends, or smooth "
+    "the expression, as in sqrt(x + 1e-6)."
+)
 
 
-def check_start(problem: Problem, task: NlpTask, guesses: Sequence[Trajectory]) -> None:
-    """Refuse a start at which the program has no finite values.
+def check_start(
+    problem: Problem,
+    model: Model,
+    program: Program,
+    task: NlpTask,
+    guesses: Sequence[Trajectory],
+) -> None:
+    """Refuse a start at which the program has no finite values or slopes.
 
     Tried a little inside of the bounds, where an interior-point solver starts.
 
@@ -33,15 +45,21 @@ def check_start(problem: Problem, task: NlpTask, guesses: Sequence[Trajectory]) 
     InvalidModel
         Naming the expressions that have none, and the first time at which they have none.
     """
-    if all(np.all(np.isfinite(part.full())) for part in task.nlp.evaluate(_inside(task))):
-        return
-    issues = [
-        issue
-        for index, (phase, guess) in enumerate(zip(problem.phases, guesses, strict=True))
-        for issue in _broken(f"/phases/{index}", phase, guess)
-    ]
-    anywhere = Issue("/objective/minimize", "has no finite value at the initial guess", _HINT)
-    raise InvalidModel(issues or [anywhere])
+    start = _inside(task)
+    objective, rows = (part.full().ravel() for part in task.nlp.evaluate(start))
+    if not (np.isfinite(objective).all() and np.isfinite(rows).all()):
+        issues = [
+            issue
+            for index, guess in enumerate(guesses)
+            for issue in _broken(problem, model, index, guess)
+        ]
+        raise InvalidModel(issues or _by_rows(problem, program, ~np.isfinite(rows), "value", _HINT))
+    _, gradient = task.nlp.gradient(start, [])
+    _, jacobian = task.nlp.jacobian(start, [])
+    steep = np.zeros(program.rows, dtype=bool)
+    steep[np.array(jacobian.row())[~np.isfinite(jacobian.nonzeros())]] = True
+    if steep.any() or not np.isfinite(gradient.full()).all():
+        raise InvalidModel(_by_rows(problem, program, steep, "slope", _SLOPE_HINT))
 
 
 def _inside(task: NlpTask) -> Array:
@@ -50,23 +68,60 @@ def _inside(task: NlpTask) -> Array:
     return np.clip(task.start, task.lower + room, task.upper - room)
 
 
-def _broken(pointer: str, phase: Phase, guess: Trajectory) -> Iterator[Issue]:
+def _broken(problem: Problem, model: Model, index: int, guess: Trajectory) -> Iterator[Issue]:
+    """Expressions along a phase that have no value somewhere on its guess."""
+    spec, phase = problem.phases[index], model.phases[index]
     fractions = np.linspace(0.0, 1.0, _SAMPLES)
     times = guess.start + (guess.end - guess.start) * fractions
-    x, u = guess.sample_states(fractions), guess.sample_controls(fractions)
-    named = list(_expressions(phase))
+    x = _within(phase, phase.states, guess.sample_states(fractions))
+    u = _within(phase, phase.controls, guess.sample_controls(fractions))
+    named = list(_expressions(spec))
     with np.errstate(all="ignore"):
-        values = along(phase.system, [expression.tree for _, expression in named])(times, x, u)
+        values = along(spec.system, [expression.tree for _, expression in named])(times, x, u)
     for (place, _), row in zip(named, values, strict=True):
         bad = np.flatnonzero(~np.isfinite(row))
         if len(bad):
-            message = (
-                f"has no finite value at the initial guess, first at t = {times[bad[0]]:.4g} s"
-            )
-            yield Issue(pointer + place, message, _HINT)
+            when = f"first at t = {times[bad[0]]:.4g} s"
+            message = f"has no finite value at the initial guess, {when}"
+            yield Issue(f"/phases/{index}{place}", message, _HINT)
 
 
-def _expressions(phase: Phase) -> Iterator[tuple[str, Expression]]:
+def _within(phase: Phase, names: Sequence[str], values: Array) -> Array:
+    """A guess (names, samples) clipped to its limits, as the program's start is."""
+    inside = values.copy()
+    for row, name in enumerate(names):
+        inside[row] = np.clip(inside[row], *phase.bounds[name])
+        inside[row, 0] = np.clip(inside[row, 0], *phase.initial[name])
+        inside[row, -1] = np.clip(inside[row, -1], *phase.final[name])
+    return inside
+
+
+def _by_rows(
+    problem: Problem, program: Program, bad: NDArray[np.bool_], what: str, hint: str
+) -> list[Issue]:
+    """One issue for each expression behind the bad rows; the objective's where there are none."""
+    labels = [label for label, broken in zip(program.labels(), bad, strict=True) if broken]
+    pointers = dict.fromkeys(_pointer(problem, label) for label in labels)
+    message = f"has no finite {what} at the initial guess"
+    return [Issue(pointer, message, hint) for pointer in pointers or ["/objective/minimize"]]
+
+
+def _pointer(problem: Problem, label: RowLabel) -> str:
+    """Where the expression behind a row stands."""
+    for index, phase in enumerate(problem.phases):
+        pointers = {f"defect {name}": f"system/derivatives/{name}" for name in phase.system.states}
+        pointers |= {f"integral {name}": f"integrals/{name}" for name in phase.integrals}
+        for field, rows in (("path", phase.path), ("boundary", phase.boundary)):
+            pointers |= {
+                f"{field} {row.name}": f"{field}/{number}/expression"
+                for number, row in enumerate(rows)
+            }
+        if label.name in pointers and label.phase in (None, index):
+            return f"/phases/{index}/{pointers[label.name]}"
+    return "/guess"
+
+
+def _expressions(phase: PhaseSpec) -> Iterator[tuple[str, Expression]]:
     system = phase.system
     for name, expression in system.define.items():
         yield f"/system/define/{name}", expression

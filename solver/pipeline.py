@@ -6,16 +6,16 @@ from collections.abc import Callable
 
 from schemas.events import EngineEvent, MeshSolved
 from schemas.problem import Problem
-from schemas.results import Solution
+from schemas.results import Solution, finite
 from solver.certificate import CHECKS, JUDGED, certify
 from solver.mesh import Mesh
 from solver.model import build_model
 from solver.refinement.subdivide import refine
 from solver.run import Run
-from solver.solution.conclude import choose, conclude, snapshot
+from solver.solution.choose import choose
+from solver.solution.conclude import conclude, snapshot
 from solver.solve_mesh import SolvedMesh, Start, solve_mesh
 from solver.trajectory import initial_guess
-from solver.transcribe import finite
 from solver.transcriptions import make_transcription
 
 

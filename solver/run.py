@@ -1,6 +1,5 @@
 """The circumstances of one solve: its clock, its deadline, who listens and who may stop it."""
 
-import math
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -8,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from schemas.events import EngineEvent, NlpIteration, StageStarted
-from schemas.results import Timing
+from schemas.results import Timing, finite
 from solver.backends import Watch
 
 _PAUSE = 1.0  # s
@@ -73,8 +72,8 @@ class Run:
                 NlpIteration(
                     mesh=mesh,
                     iteration=iteration,
-                    objective=objective if math.isfinite(objective) else None,
-                    violation=violation if math.isfinite(violation) else None,
+                    objective=finite(objective),
+                    violation=finite(violation),
                     seconds=time.monotonic() - began,
                 )
             )

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.errors import InvalidModel, Issue
+from schemas.events import StageStarted
 from schemas.phases import Phase
 from schemas.problem import Problem
 from schemas.results import PhaseResult
@@ -129,7 +130,13 @@ def solve_mesh(
                 publish(built.read(unfinished))
 
     with run.stage("solve"):
-        outcome = _solve(problem, built.task, start.number, lambda: run.watch(start.number, keep))
+        outcome = _solve(
+            problem,
+            built.task,
+            start.number,
+            lambda: run.watch(start.number, keep),
+            lambda note: run.on_event(StageStarted(stage="solve", note=note)),
+        )
     with run.stage("refine"):
         return built.read(outcome)
 
@@ -140,13 +147,19 @@ def _build(problem: Problem, model: Model, transcription: Transcription, start: 
     scaling = typical_scaling(transcribed.program)
     task = NlpTask.of(transcribed.program, scaling)
     if start.number == 0:
-        check_start(problem, task, start.guesses)
+        check_start(problem, model, transcribed.program, task, start.guesses)
     redundancy = find_redundancy(transcribed.program, scaling, task.nlp)
     reduced = task.without(redundancy)
     return _Built(problem, transcription, transcribed, scaling, reduced, redundancy, began)
 
 
-def _solve(problem: Problem, task: NlpTask, mesh: int, watch: Callable[[], Watch]) -> Outcome:
+def _solve(
+    problem: Problem,
+    task: NlpTask,
+    mesh: int,
+    watch: Callable[[], Watch],
+    announce: Callable[[str], None],
+) -> Outcome:
     """Solve, on later meshes first from a warm start; cold again where that fails."""
     backend, settings = make_backend(problem.solver.backend), problem.solver
     if refusal := backend.refusal(task):
@@ -156,4 +169,7 @@ def _solve(problem: Problem, task: NlpTask, mesh: int, watch: Callable[[], Watch
     outcome = backend.solve(task, settings, watch(), warm=True)
     if outcome.status in (NlpStatus.OPTIMAL, NlpStatus.STOPPED, NlpStatus.TIME_LIMIT):
         return outcome
-    return backend.solve(task, settings, watch(), warm=False)
+    announce("again, from a cold start")
+    again = backend.solve(task, settings, watch(), warm=False)
+    settled = again.status is NlpStatus.OPTIMAL or outcome.status is not NlpStatus.ACCEPTABLE
+    return again if settled else outcome

@@ -117,8 +117,11 @@ def _status(raw: str, final: Iterate, watch: Watch) -> NlpStatus:
     status = STATUSES[raw]
     if status is NlpStatus.STOPPED and watch.cause is not None:
         return _CAUSES[watch.cause]
-    if status is NlpStatus.ACCEPTABLE and final.violation > FEASIBLE:
+    feasible = final.violation <= FEASIBLE
+    if status is NlpStatus.ACCEPTABLE and not feasible:
         return NlpStatus.INFEASIBLE
+    if status is NlpStatus.INFEASIBLE and feasible:
+        return NlpStatus.ACCEPTABLE
     return status
 
 

@@ -124,4 +124,4 @@ class Case:
 def _tolerance(problem: Problem) -> float:
     if problem.certificate.tolerance is not None:
         return problem.certificate.tolerance
-    return 10 * problem.refinement.tolerance if problem.refinement else COARSE_TOLERANCE
+    return min(1.0, 10 * problem.refinement.tolerance) if problem.refinement else COARSE_TOLERANCE

@@ -35,14 +35,14 @@ _AT_ONCE = 64  # suspects: bounds the memory where there is one at every node
 class Redundancy:
     """What is implied: positions of rows and of fixed variables, and how to call them.
 
-    ``names`` has each name once, at however many nodes it stands; ``contradictions`` names
+    ``names`` has each name once, at however many nodes it stands; ``conflicts`` names
     equalities that depend on others but ask for another value.
     """
 
     rows: Indices
     fixed: Indices
     names: tuple[str, ...]
-    contradictions: tuple[str, ...]
+    conflicts: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,7 +17,10 @@ _NEGLIGIBLE = 1e-10  # relative: rounding, no violation
 
 @dataclass(frozen=True, slots=True)
 class RowResidual:
-    """A violated row or bound. ``value`` is in its own unit, ``relative`` per typical size."""
+    """A violated row or bound. ``value`` is in its own unit, ``relative`` per typical size.
+
+    A row without a finite value is the worst there is: ``relative`` is infinite.
+    """
 
     name: str
     phase: int | None
@@ -47,9 +50,9 @@ def _row_residuals(program: Program, scaling: Scaling, rows: Array) -> Iterator[
     lower, upper = program.row_vector("lower", 0.0), program.row_vector("upper", 0.0)
     value = np.maximum(np.maximum(lower - rows, rows - upper), 0.0)
     labels = list(program.labels())
-    for i in np.flatnonzero(value > 0):
+    for i in np.flatnonzero(~(value <= 0)):
         label = labels[i]
-        size = float(value[i] / scaling.rows[i])
+        size = float(value[i] / scaling.rows[i]) if np.isfinite(value[i]) else np.inf
         yield RowResidual(label.name, label.phase, label.fraction, float(value[i]), size)
 
 

@@ -18,13 +18,14 @@ from schemas.results import (
     Solution,
     SolutionStatus,
     SolverReport,
+    finite,
 )
 from solver.backends import NlpStatus
 from solver.nlp.residuals import RowResidual
 from solver.run import Run
+from solver.solution.choose import choose
 from solver.solution.words import advice, message, warnings
 from solver.solve_mesh import SolvedMesh
-from solver.transcribe import finite
 
 _STATUS = {
     NlpStatus.ACCEPTABLE: SolutionStatus.ACCEPTABLE,
@@ -39,22 +40,12 @@ _STATUS = {
 """What becomes of an NLP that did not end at an optimum."""
 
 
-def choose(solved: Sequence[SolvedMesh]) -> SolvedMesh:
-    """The mesh to publish: the last, or the one before where the last came to nothing.
-
-    Only an infeasible last mesh is published as it is: its residuals say what cannot be met.
-    """
-    last = solved[-1]
-    told = (NlpStatus.OPTIMAL, NlpStatus.ACCEPTABLE, NlpStatus.INFEASIBLE)
-    return last if last.outcome.status in told or len(solved) == 1 else solved[-2]
-
-
 def conclude(
     problem: Problem, solved: Sequence[SolvedMesh], certificate: Certificate, run: Run
 ) -> Solution:
     """The solution of a finished run."""
     chosen = choose(solved)
-    status = _status(problem, solved[-1], certificate)
+    status = _status(problem, solved, certificate)
     return _solution(problem, solved, chosen, certificate, status, run)
 
 
@@ -65,10 +56,20 @@ def snapshot(problem: Problem, solved: Sequence[SolvedMesh], run: Run) -> Soluti
     return _solution(problem, solved, chosen, unchecked, SolutionStatus.CANCELLED, run)
 
 
-def _status(problem: Problem, last: SolvedMesh, certificate: Certificate) -> SolutionStatus:
-    """How the mathematics ended: optimal, meshed and certified is ``converged``."""
+_ENDED = (NlpStatus.STOPPED, NlpStatus.TIME_LIMIT, NlpStatus.ACCEPTABLE)
+
+
+def _status(
+    problem: Problem, solved: Sequence[SolvedMesh], certificate: Certificate
+) -> SolutionStatus:
+    """How the mathematics ended: optimal, meshed and certified is ``converged``.
+
+    Where a finer mesh finds nothing, there is the optimum before it: its mesh is the limit.
+    """
+    last = solved[-1]
     if not last.optimal:
-        return _STATUS[last.outcome.status]
+        lost = len(solved) > 1 and last.outcome.status not in _ENDED
+        return SolutionStatus.MESH_LIMIT if lost else _STATUS[last.outcome.status]
     if problem.refinement is not None and not last.max_error <= problem.refinement.tolerance:
         return SolutionStatus.MESH_LIMIT
     if certificate.verdict != "certified":
@@ -90,7 +91,7 @@ def _solution(
         status=status,
         objective=finite(chosen.objective),
         message=message(status, solved, certificate),
-        advice=advice(status, residuals, certificate),
+        advice=advice(problem, status, chosen.phases, residuals, certificate),
         warnings=warnings(problem, chosen.redundancy),
         phases=chosen.phases,
         mesh_refinement=_history(problem, solved),
@@ -144,7 +145,10 @@ def _residual(residual: RowResidual, phases: Sequence[PhaseResult]) -> Residual:
     if phase is not None and np.isfinite(residual.fraction):
         time = phase.knots[0] + residual.fraction * (phase.knots[-1] - phase.knots[0])
     return Residual(
-        name=residual.name, phase=phase.name if phase else None, time=time, value=residual.value
+        name=residual.name,
+        phase=phase.name if phase else None,
+        time=time,
+        value=finite(residual.value),
     )
 
 

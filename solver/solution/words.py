@@ -2,10 +2,14 @@
 
 from collections.abc import Iterator, Sequence
 
+import numpy as np
+
+from schemas import resolve
 from schemas.expressions import Expression, warnings_in
 from schemas.problem import Problem
-from schemas.results import Certificate, Residual, SolutionStatus
+from schemas.results import Certificate, PhaseResult, Residual, SolutionStatus
 from solver.nlp.redundancy import Redundancy
+from solver.solution.choose import choose
 from solver.solve_mesh import SolvedMesh
 
 _MESSAGES = {
@@ -32,7 +36,10 @@ _ADVICE = {
     ],
     SolutionStatus.DIVERGED: ["Bound the states and controls, or give a better guess."],
     SolutionStatus.UNBOUNDED: ["Bound what the objective rewards, or add a cost to it."],
-    SolutionStatus.ITERATION_LIMIT: ["Raise solver.max_iterations, or give a better guess."],
+    SolutionStatus.ITERATION_LIMIT: [
+        "Raise solver.max_iterations, or give a better guess.",
+        "If the objective only keeps falling, something that it rewards lacks a bound.",
+    ],
     SolutionStatus.TIME_LIMIT: ["Raise limits.seconds, or start on fewer segments."],
     SolutionStatus.INVALID_NUMBER: [
         "Bound the states and controls to where every expression has a value."
@@ -40,9 +47,12 @@ _ADVICE = {
     SolutionStatus.MESH_LIMIT: [
         "Raise refinement.max_iterations or max_segments, or its tolerance.",
         "Where a control jumps, the error falls slowly: it is the mesh that has to find the jump.",
+        "An angle as a control may jump by whole turns between nodes: bound it to one turn.",
     ],
 }
 
+_FOREVER = 1e4  # s: seldom meant where nothing limits the time
+_ON_BOUND, _MOSTLY = 1e-4, 0.5
 _OVERSHOOT = (
     "The control passes its bounds between nodes: use method.control 'linear', or the "
     "trapezoidal method, where a control saturates."
@@ -55,29 +65,58 @@ def message(status: SolutionStatus, solved: Sequence[SolvedMesh], certificate: C
     if status is SolutionStatus.CERTIFICATE_FAILED:
         names = ", ".join(row.name for row in certificate.checks if row.judged and not row.passed)
         text += f" Failed: {names}."
-    if len(solved) > 1 and not solved[-1].optimal:
-        segments = sum(len(errors) for errors in solved[-2].errors)
-        text += f" The mesh before, of {segments} segments, was solved to an optimum."
+    if choose(solved) is not solved[-1]:
+        before, after = (sum(map(len, mesh.errors)) for mesh in solved[-2:])
+        ended = solved[-1].outcome.status.replace("_", " ")
+        text += f" This is the optimum on {before} segments; on {after} it ended: {ended}."
     return text
 
 
 def advice(
-    status: SolutionStatus, residuals: Sequence[Residual], certificate: Certificate
+    problem: Problem,
+    status: SolutionStatus,
+    phases: Sequence[PhaseResult],
+    residuals: Sequence[Residual],
+    certificate: Certificate,
 ) -> list[str]:
     """What to try next."""
     lines = list(_ADVICE.get(status, []))
-    if status is SolutionStatus.LOCALLY_INFEASIBLE and residuals:
-        lines.insert(0, f"The constraint violated most is {_place(residuals[0])}.")
+    if status is SolutionStatus.LOCALLY_INFEASIBLE:
+        worst = [f"The constraint violated most is {_place(row)}." for row in residuals[:1]]
+        lines = [*worst, *_saturated(problem, phases), *lines]
+    lines += _runaway(problem, phases)
     failed = {row.name for row in certificate.checks if row.judged and not row.passed}
     if status is SolutionStatus.CERTIFICATE_FAILED and "control overshoot" in failed:
         lines.append(_OVERSHOOT)
     return lines
 
 
+def _runaway(problem: Problem, phases: Sequence[PhaseResult]) -> Iterator[str]:
+    """Free final times, open above, that ended far away: longer is always better there."""
+    for spec, phase in zip(problem.phases, phases, strict=True):
+        _, latest = resolve.interval(spec.time.final, resolve.parameters(spec.system))
+        if np.isinf(latest) and phase.knots[-1] - phase.knots[0] > _FOREVER:
+            yield f"The final time ran away to {phase.knots[-1]:.3g} s: bound 'time.final' above."
+
+
+def _saturated(problem: Problem, phases: Sequence[PhaseResult]) -> Iterator[str]:
+    """The controls that sit on their bounds for most of the nodes."""
+    for spec, phase in zip(problem.phases, phases, strict=True):
+        constants = resolve.parameters(spec.system)
+        for name in spec.system.controls:
+            limits = np.array(resolve.interval(spec.bounds.get(name), constants))
+            values = np.array(phase.groups["controls"].values[name], dtype=float)
+            near = np.abs(values[:, None] - limits) <= _ON_BOUND * (1 + np.abs(limits))
+            share = float(np.mean(near.any(axis=1)))
+            if share > _MOSTLY:
+                yield f"'{name}' is on its bounds for {share:.0%} of the nodes."
+
+
 def _place(residual: Residual) -> str:
     phase = f" in phase {residual.phase}" if residual.phase else ""
     time = "" if residual.time is None else f" at t = {residual.time:.4g} s"
-    return f"'{residual.name}'{phase}{time}, by {residual.value:.3g}"
+    size = "which has no finite value" if residual.value is None else f"by {residual.value:.3g}"
+    return f"'{residual.name}'{phase}{time}, {size}"
 
 
 def warnings(problem: Problem, redundancy: Redundancy) -> list[str]:
@@ -86,8 +125,8 @@ def warnings(problem: Problem, redundancy: Redundancy) -> list[str]:
         f"'{name}' follows from the other equalities and was dropped." for name in redundancy.names
     ]
     lines += [
-        f"'{name}' depends on other equalities but asks for another value: they contradict."
-        for name in redundancy.contradictions
+        f"'{name}' depends on other equalities and may contradict them."
+        for name in redundancy.conflicts
     ]
     for place, expression in _expressions(problem):
         lines += [f"{place}: {note}" for note in warnings_in(expression.tree)]

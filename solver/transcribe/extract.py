@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from footfall.curves import Curves
-from schemas.results import CurveGroup, Group, PhaseResult
+from schemas.results import CurveGroup, Group, PhaseResult, finite
 from solver.trajectory import Trajectory
 from solver.transcribe.layout import PhaseLayout
 from solver.transcribe.transcribe import Transcribed
@@ -110,8 +110,3 @@ def _group(names: Sequence[str], times: Array, values: Array) -> Group:
     series = np.concatenate([inner, values[-1:, -1]])
     columns = {name: [finite(v) for v in series[:, i]] for i, name in enumerate(names)}
     return Group(time=time.tolist(), values=columns)
-
-
-def finite(value: float) -> float | None:
-    """A number for JSON: NaN and infinities are null."""
-    return float(value) if np.isfinite(value) else None

@@ -56,7 +56,7 @@ def test_the_commands_of_a_document(
     run = subprocess.run(
         ["bash", "-euxo", "pipefail", "-c", script],
         cwd=ROOT,
-        env=environment,
+        env=environment | {"FOOTFALL_URL": f"http://{address}"},
         capture_output=True,
         text=True,
         check=False,

@@ -104,7 +104,8 @@ class _LiveTable:
 
 
 def _stage(data: dict[str, Any]) -> str:
-    return _STAGES.get(data["stage"], str(data["stage"]))
+    note = data.get("note")
+    return _STAGES.get(data["stage"], str(data["stage"])) + (f" {note}" if note else "")
 
 
 def _mesh_words(data: dict[str, Any]) -> str:

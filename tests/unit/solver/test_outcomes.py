@@ -26,6 +26,7 @@ def test_infeasible_names_the_constraints() -> None:
     worst = solution.solver.residuals[0]
     assert worst.name.startswith("defect")
     assert worst.phase == "push"
+    assert worst.value is not None
     assert worst.value > 1e-3
     assert any(worst.name in line for line in solution.advice)
 
@@ -224,3 +225,73 @@ def test_a_fast_solve_is_shown_only_when_a_mesh_is_solved() -> None:
     snapshots: list[Solution] = []
     solve(read_problem(block()), on_snapshot=snapshots.append)
     assert len(snapshots) == 1
+
+
+def test_a_feasible_point_is_never_called_infeasible() -> None:
+    """Two rows that are one: the multipliers diverge, but the point meets everything."""
+    document = examples.load("double_integrator")
+    document["phases"][0]["boundary"] = [
+        {"name": "a", "expression": "duration - 2.2", "lower": 0, "upper": 0},
+        {"name": "b", "expression": "duration^2 - 4.84", "lower": 0, "upper": 0},
+    ]
+    solution = solved(document)
+    assert solution.certificate.verdict == "certified"
+    assert solution.status in (SolutionStatus.CONVERGED, SolutionStatus.ACCEPTABLE)
+
+
+@pytest.mark.parametrize(
+    ("derivative", "initial", "message"),
+    [("u + sqrt(x)", 0, "slope"), ("u + atanh(x)", 0.1, "value")],
+)
+def test_a_model_that_breaks_only_at_an_end(derivative: str, initial: float, message: str) -> None:
+    document = block(
+        system={"states": ["x"], "derivatives": {"x": derivative}},
+        phase={"initial": {"x": initial}, "final": {"x": 5}},
+        guess={"kind": "constant", "values": {"x": 0.1}},
+    )
+    with pytest.raises(InvalidModel) as caught:
+        solved(document)
+    (issue,) = caught.value.issues
+    assert issue.pointer == "/phases/0/system/derivatives/x"
+    assert message in issue.message
+    assert issue.hint
+
+
+def test_infeasible_names_the_saturated_controls() -> None:
+    solution = solved(block(phase={"bounds": {"u": [-3, 3]}}))
+    assert any("'u' is on its bounds" in line for line in solution.advice)
+
+
+def test_a_duration_that_runs_away_is_told() -> None:
+    document = block(phase={"time": {"initial": 0, "final": [0.1, None]}})
+    assert any("time.final" in line for line in solved(document).advice)
+    bounded = block(phase={"time": {"initial": 0, "final": [0.1, 2]}})
+    assert not any("time.final" in line for line in solved(bounded).advice)
+
+
+def test_where_a_finer_mesh_is_lost_the_optimum_before_it_is_published() -> None:
+    """Zermelo's steering angle without bounds: neighbours lie whole turns apart."""
+    zermelo = {
+        "kind": "ode",
+        "states": ["x", "y"],
+        "controls": ["a"],
+        "derivatives": {"x": "cos(a) - y", "y": "sin(a)"},
+    }
+    document = block(
+        system=zermelo,
+        phase={
+            "time": {"initial": 0, "final": [0.1, 20]},
+            "initial": {"x": 3.66, "y": -1.86},
+            "final": {"x": 0, "y": 0},
+            "integrals": {},
+        },
+        objective={"minimize": "duration"},
+        guess={"kind": "linear"},
+        method={"kind": "hermite_simpson", "segments": 25},
+        solver={"max_iterations": 300},
+    )
+    solution = solved(document)
+    assert solution.status is SolutionStatus.MESH_LIMIT
+    assert solution.objective == pytest.approx(5.4578, abs=1e-2)
+    assert "This is the optimum on" in solution.message
+    assert any("whole turns" in line for line in solution.advice)
