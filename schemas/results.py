@@ -50,11 +50,12 @@ class CurveGroup(Strict):
 
     On the segment from ``breaks[k]`` to ``breaks[k+1]`` a series is the sum over j of
     ``coefficients[name][k][j] * T_j(s)``, where s runs from -1 to 1 over the segment and T_j is
-    the Chebyshev polynomial of the first kind (well conditioned at any degree).
+    the Chebyshev polynomial of the first kind (well conditioned at any degree). Null where the
+    model had no finite value.
     """
 
     breaks: list[float]
-    coefficients: dict[str, list[list[float]]]
+    coefficients: dict[str, list[list[float | None]]]
 
 
 class PhaseResult(Strict):

@@ -5,6 +5,7 @@ segment). Everything is vectorised over times. Imports numpy only: engine, worke
 client all evaluate curves with this one file.
 """
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Literal, Self
 
@@ -116,8 +117,8 @@ class Curves(Mapping[str, Curve]):
         return cls(breaks, dict(zip(names, fit(nodes, values), strict=True)))
 
     def to_dict(self) -> dict[str, Any]:
-        """The ``CurveGroup`` as JSON values."""
-        coefficients = {name: curve.coefficients.tolist() for name, curve in self.items()}
+        """The ``CurveGroup`` as JSON values; null where a coefficient is not a finite number."""
+        coefficients = {name: _listed(curve.coefficients) for name, curve in self.items()}
         return {"breaks": self.breaks.tolist(), "coefficients": coefficients}
 
     def sample(self, times: ArrayLike, side: Side = "right") -> dict[str, Floats]:
@@ -132,6 +133,11 @@ class Curves(Mapping[str, Curve]):
 
     def __len__(self) -> int:
         return len(self._curves)
+
+
+def _listed(coefficients: Floats) -> list[list[float | None]]:
+    rows = coefficients.tolist()
+    return [[value if math.isfinite(value) else None for value in row] for row in rows]
 
 
 def fit(nodes: ArrayLike, values: ArrayLike) -> Floats:

@@ -120,7 +120,9 @@ def _curves(group: CurveGroup | None, names: Sequence[str], label: str) -> Curve
     if missing:
         raise MalformedCurves(f"the {label} have no curve of {', '.join(missing)}")
     try:
-        return Curves(group.breaks, {name: group.coefficients[name] for name in names})
+        return Curves(
+            group.breaks, {name: np.array(group.coefficients[name], dtype=float) for name in names}
+        )
     except ValueError as error:
         raise MalformedCurves(f"the curves of the {label} cannot be read: {error}") from error
 

@@ -118,3 +118,10 @@ def test_fit_refuses_what_does_not_fit() -> None:
         fit([-1.0, 1.0], np.zeros((3, 4, 1)))
     with pytest.raises(ValueError, match="distinct"):
         fit([1.0, 1.0], np.zeros((3, 2, 1)))
+
+
+def test_what_is_no_number_is_null_in_json_and_nan_again() -> None:
+    curves = Curves([0, 1, 2], {"x": [[1.0, 2.0], [np.nan, np.inf]]})
+    document = curves.to_dict()
+    assert document["coefficients"] == {"x": [[1.0, 2.0], [None, None]]}
+    assert np.isnan(Curves.from_dict(document)["x"](1.5))
