@@ -7,6 +7,7 @@ from contextlib import closing
 
 from api.serve import log_to_stderr, serve
 from api.settings import SettingsError, from_environment
+from schemas.errors import StoreUnavailable
 from store import connect
 
 logger = logging.getLogger("footfall.api")
@@ -26,7 +27,12 @@ def main() -> int:
     if not settings.redis_url:
         logger.critical("REDIS_URL is not set; for an embedded server use 'footfall serve'")
         return 2
-    with closing(connect(settings.redis_url)) as store:
+    try:
+        store = connect(settings.redis_url)
+    except StoreUnavailable as error:
+        logger.critical("%s %s", error.message, error.hint)
+        return 2
+    with closing(store):
         serve(store, settings)
     return 0
 

@@ -1,6 +1,7 @@
 """Serving the app until a signal comes."""
 
 import logging
+import time
 from dataclasses import replace
 
 import uvicorn
@@ -37,4 +38,9 @@ def serve(store: Store, settings: ApiSettings) -> None:
 
 def log_to_stderr() -> None:
     """One line for each event, on stderr. For processes whose whole purpose is to serve."""
-    logging.basicConfig(level=logging.INFO, format="%(asctime)s %(levelname)s %(name)s %(message)s")
+    words, time_of_day = "%(asctime)s %(levelname)s %(name)s: %(message)s", "%Y-%m-%dT%H:%M:%SZ"
+    formatter = logging.Formatter(words, time_of_day)
+    formatter.converter = time.gmtime
+    handler = logging.StreamHandler()
+    handler.setFormatter(formatter)
+    logging.basicConfig(level=logging.INFO, handlers=[handler])

@@ -4,6 +4,7 @@ Run: python -m benchmarks.service
 """
 
 import tempfile
+import time
 from pathlib import Path
 
 import examples
@@ -14,6 +15,8 @@ from schemas.reading import read_problem
 from solver import solve
 
 RUNS = 20
+PAUSE = 0.1
+"""Seconds after a job: the worker still draws the report, and must not slow what comes next."""
 
 
 def main() -> None:
@@ -24,11 +27,16 @@ def main() -> None:
         Service(ServeSettings(port=0, folder=Path(folder))) as service,
         Client(service.url) as client,
     ):
-        served, here = in_turn(
-            RUNS,
-            lambda: timed(lambda: client.wait(client.submit(document).id)),
-            lambda: timed(lambda: solve(read_problem(document)).model_dump_json()),
-        )
+
+        def through_the_service() -> float:
+            seconds = timed(lambda: client.wait(client.submit(document).id))
+            time.sleep(PAUSE)
+            return seconds
+
+        def in_this_process() -> float:
+            return timed(lambda: solve(read_problem(document)).model_dump_json())
+
+        served, here = in_turn(RUNS, through_the_service, in_this_process)
     rows = [Row("HTTP, queue, warm worker, result fetched", served, here)]
     show("cart-pole refined to 1e-6, medians", rows, "in-process")
     print(f"on top of the engine: {(served - here) * 1e3:.0f} ms (aim: at most 60)")

@@ -111,8 +111,17 @@ class EmbeddedServer:
             raise StoreUnavailable("The embedded queue server is not running.")
         return self._process.pid
 
+    @property
+    def running(self) -> bool:
+        """Whether the server that was started still lives."""
+        return self._process is not None and self._process.poll() is None
+
     def start(self) -> None:
-        """Start and wait until it answers. Raises StoreUnavailable with the server's own words."""
+        """Start, again if it was killed, and wait until it answers.
+
+        Raises StoreUnavailable with the server's own words.
+        """
+        self.stop()
         program = binary()
         _private(self.folder)
         _private(self._socket.parent)

@@ -108,7 +108,7 @@ class Jobs(Protocol):
         """
 
     def update(self, job_id: str, token: str, progress: Progress, timings: JobTimings) -> bool:
-        """Progress of the live attempt; False if the token is stale (stop working then)."""
+        """Progress of the live attempt; False if it should stop: cancelled, or live no more."""
 
     def delete(self, job_id: str, owner: str) -> None:
         """Forget an ended job, its problem, result, report and events.
@@ -120,11 +120,14 @@ class Jobs(Protocol):
 class Results(Protocol):
     """Result documents and reports, compressed; kept for the store's retention time."""
 
-    def put(self, job_id: str, token: str, result: bytes, report: bytes | None = None) -> bool:
-        """Store for the live attempt; False if the token is stale."""
+    def put(self, job_id: str, token: str, result: bytes) -> bool:
+        """Store for the live attempt, in the place of what it had so far; False if stale."""
 
-    def snapshot(self, job_id: str, token: str, result: bytes) -> bool:
-        """Store what there is so far; it is served until ``put`` replaces it."""
+    def put_report(self, job_id: str, token: str, report: bytes) -> bool:
+        """Store beside the result of the attempt that ended the job, and for as long as it.
+
+        False if the token is another one's, or the job is still live or forgotten.
+        """
 
     def get(self, job_id: str) -> bytes | None:
         """The result's JSON, or None."""
@@ -136,8 +139,8 @@ class Results(Protocol):
 class Events(Protocol):
     """The log of one job's events, capped in length, the terminal one always kept."""
 
-    def append(self, job_id: str, event: Event, token: str | None = None) -> str:
-        """Add an event; its id, or "" where the job is gone or the token stale."""
+    def append(self, job_id: str, events: Sequence[Event], token: str) -> bool:
+        """Add events of the live attempt in one step; False if it is not live any more."""
 
     def read(self, job_id: str, after: str = "0") -> list[LoggedEvent]:
         """The events after an id, at once."""

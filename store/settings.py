@@ -32,18 +32,22 @@ class StoreSettings:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Patience:
-    """How long to wait for a server that is away, in seconds, before StoreUnavailable."""
+    """How long to wait for a server that is away, in seconds, before StoreUnavailable.
+
+    ``silence``: try again also where the server took the command and did not reply.
+    """
 
     tries: int
     first_pause: float
     longest_pause: float
     reply: float
+    silence: bool = False
 
 
 SHORT = Patience(tries=3, first_pause=0.05, longest_pause=0.5, reply=5.0)
 """For requests: somebody waits for the answer."""
 
-LONG = Patience(tries=60, first_pause=0.2, longest_pause=2.0, reply=15.0)
+LONG = Patience(tries=60, first_pause=0.2, longest_pause=2.0, reply=15.0, silence=True)
 """For workers: an hour of work hangs on it. A blocking read must be shorter than ``reply``."""
 
 NONE = Patience(tries=0, first_pause=0.0, longest_pause=0.0, reply=1.0)

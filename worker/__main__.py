@@ -8,6 +8,7 @@ from schemas.errors import FootfallError
 from worker import logs
 from worker.main import check, run_worker
 from worker.settings import WorkerSettings, server_url
+from worker.warming import warm_up
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -19,6 +20,9 @@ def main(arguments: list[str] | None = None) -> int:
         sys.stderr.write(words + "\n")
         return 0 if alive else 1
     logs.configure(as_json=options.json)
+    # Read when numpy and casadi are loaded. A worker is one of as many as there are cores, and
+    # the matrices are small: more threads would only wait for each other.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     try:
         # Loaded here, once, so that --check is quick and no forked process loads it again.
         from footfall.report import render  # noqa: PLC0415
@@ -26,6 +30,7 @@ def main(arguments: list[str] | None = None) -> int:
         from solver.backends import BACKENDS  # noqa: PLC0415
 
         settings = WorkerSettings(url=url, name=options.name)
+        warm_up(solve, render)
         run_worker(settings, solve, render, backends=[*BACKENDS])
     except FootfallError as error:
         sys.stderr.write(f"{error.message} {error.hint}\n")

@@ -1,5 +1,6 @@
 """Starting a worker, and asking whether one lives."""
 
+import gc
 import logging
 import socket
 from collections.abc import Sequence
@@ -10,6 +11,7 @@ from schemas.errors import StoreUnavailable
 from store import connect
 from store.backend.connection import open_client
 from store.backend.wiring import assemble
+from store.ports import Store
 from store.settings import LONG, NONE, SHORT, StoreSettings
 from worker.presence import Presence, unique_name
 from worker.process import FootfallWorker
@@ -36,13 +38,23 @@ def run_worker(
     kept = store_settings or StoreSettings()
     client = open_client(settings.url, LONG)
     store = assemble(client, kept)
-    store.ping()
     glance = connect(settings.url, patience=NONE, settings=kept)
+    _first_word(store, glance)
     RUNNER.set(Runner(store, glance, engine, render, settings.name))
     presence = Presence(store, settings.name, settings.ttl, backends)
     logger.info("worker %s starts", settings.name)
+    gc.freeze()  # what is here already: a fork's collector would copy it page by page
     FootfallWorker(client, store, glance, settings, presence).work(logging_level="ERROR")
     logger.info("worker %s has ended", settings.name)
+
+
+def _first_word(store: Store, glance: Store) -> None:
+    """Wait for the server, and say at once that we do. Raises StoreUnavailable in the end."""
+    try:
+        glance.ping()
+    except StoreUnavailable as error:
+        logger.warning("no work yet: %s %s", error.message, error.hint)
+        store.ping()
 
 
 def check(url: str) -> tuple[bool, str]:

@@ -1,96 +1,148 @@
-"""What a running solve tells the store, and what the store tells it; both may be away for a while.
+"""What a running solve tells the store, and what the store tells it.
 
-Nothing here may slow or end a solve: what cannot be sent at once is kept or dropped.
+The talking is done by a thread of its own, now and then: the engine never waits for the store,
+whether that is slow or away. What cannot be sent is kept and told later.
 """
 
 import logging
 import os
+import threading
 import time
-from collections import deque
+from collections.abc import Iterator
+from contextlib import contextmanager
 
-from schemas.errors import StoreUnavailable, UnknownJob
+from schemas.errors import StoreUnavailable
 from schemas.events import EngineEvent, MeshSolved, NlpIteration, StageStarted
-from schemas.jobs import JobStatus, JobTimings, Progress
+from schemas.jobs import JobTimings, Progress
 from schemas.results import Solution
 from store.ports import JobRecord, Store
 
 logger = logging.getLogger("footfall.worker")
 
-EVERY = 0.1
-"""Seconds between two NLP iterations that are told, and between two glances at the flag."""
+EVERY = 0.25
+"""Seconds between two exchanges with the store; each costs the engine some milliseconds."""
 
-_AWAY = 1.0
-"""Seconds of silence after the store was away."""
+PATIENCE = 0.5
+"""Seconds between two snapshots; a solve that is over sooner leaves its result instead."""
 
 _KEPT = 200
 
 
 class Reporter:
-    """Turns engine events into the log and the record's progress.
+    """Takes the engine's events and snapshots, and brings them to the store.
 
-    Stages and meshes are always told, if late; of the NLP iterations ten a second.
+    Every stage and mesh is told, if late; of the NLP iterations between two exchanges the last.
+    ``stop`` says whether the engine should: the job was cancelled, handed on, or is an orphan.
     """
 
     def __init__(self, store: Store, record: JobRecord) -> None:
+        self.stop = False
         self._store = store
         self._record = record
+        self._parent = os.getppid()
+        self._lock = threading.Lock()  # over all that follows
         self._progress = Progress()
         self._seconds: dict[str, float] = {}
         self._stage_since = time.monotonic()
-        self._pending: deque[EngineEvent] = deque(maxlen=_KEPT)
-        self._next_iteration = 0.0
-        self._next_update = 0.0
-        self._quiet_until = 0.0
-        self.stale = False
+        self._events: list[EngineEvent] = []
+        self._snapshot: Solution | None = None
+        self._next_snapshot = time.monotonic() + PATIENCE
+
+    # The engine's side: quick, and without the store.
 
     def __call__(self, event: EngineEvent) -> None:
         """Take an event of the engine."""
-        now = time.monotonic()
-        self._progress = self._progress.model_copy(update=self._news(event, now))
-        if isinstance(event, NlpIteration):
-            if now < max(self._next_iteration, self._quiet_until):
-                return
-            self._next_iteration = now + EVERY
-        self._pending.append(event)
-        self.flush()
+        with self._lock:
+            news = self._news(event, time.monotonic())
+            self._progress = self._progress.model_copy(update=news)
+            if isinstance(event, NlpIteration) and isinstance(self._last(), NlpIteration):
+                self._events.pop()
+            self._events.append(event)
 
     def snapshot(self, solution: Solution) -> None:
-        """Store what there is so far; dropped while the store is away."""
-        record = self._record
-        try:
-            document = solution.model_dump_json().encode()
-            self._store.results.snapshot(record.id, record.token, document)
-        except StoreUnavailable:
-            logger.warning("job %s: a snapshot was dropped, the store is away", record.id)
-
-    def flush(self, *, last: bool = False) -> None:
-        """Send what is pending, unless the store was away a moment ago.
-
-        The record's progress follows ten times a second, and with the ``last`` flush.
-        """
-        now, record = time.monotonic(), self._record
-        if now < self._quiet_until:
-            return
-        try:
-            while self._pending:
-                self._store.events.append(record.id, self._pending[0], record.token)
-                self._pending.popleft()
-            if last or now >= self._next_update:
-                self._next_update = now + EVERY
-                self.stale = not self._store.jobs.update(
-                    record.id, record.token, self._progress, self.timings()
-                )
-        except StoreUnavailable:
-            self._quiet_until = time.monotonic() + _AWAY
+        """Take what there is so far."""
+        with self._lock:
+            self._snapshot = solution
 
     def timings(self) -> JobTimings:
         """Seconds of each stage so far."""
         started = self._record.started or self._record.created
-        seconds = dict(self._seconds)
-        if self._progress.stage:
-            stage, spent = self._progress.stage, time.monotonic() - self._stage_since
-            seconds[stage] = seconds.get(stage, 0.0) + spent
+        with self._lock:
+            seconds = dict(self._seconds)
+            if self._progress.stage:
+                stage, spent = self._progress.stage, time.monotonic() - self._stage_since
+                seconds[stage] = seconds.get(stage, 0.0) + spent
         return JobTimings(queued=max(0.0, started - self._record.created), **seconds)
+
+    # The store's side.
+
+    @contextmanager
+    def talking(self) -> Iterator[None]:
+        """Exchange with the store all the while."""
+        ended = threading.Event()
+        thread = threading.Thread(target=self._talk, args=(ended,), name="reporter", daemon=True)
+        thread.start()
+        try:
+            yield
+        finally:
+            ended.set()
+            thread.join()
+
+    def exchange(self) -> None:
+        """Send what is new, and ask whether to go on; while the store is away, later."""
+        try:
+            self._send_events()
+            self.stop = not self._wanted() or self.stop
+            if self.stop or time.monotonic() >= self._next_snapshot:
+                self._send_snapshot()
+        except StoreUnavailable:
+            return
+
+    def finish(self, *, with_snapshot: bool) -> None:
+        """The last exchange; a snapshot is of no use where a result follows."""
+        if not with_snapshot:
+            self._snapshot = None
+        self._next_snapshot = 0.0
+        self.exchange()
+
+    def _talk(self, ended: threading.Event) -> None:
+        while not ended.wait(EVERY):
+            try:
+                self.exchange()
+            except Exception:  # such as MemoryError: the solve is worth more than its progress
+                logger.exception("job %s: progress could not be told", self._record.id)
+
+    def _send_events(self) -> None:
+        with self._lock:
+            events, self._events = self._events, []
+        if not events:
+            return
+        try:
+            self._store.events.append(self._record.id, events, self._record.token)
+        except StoreUnavailable:
+            with self._lock:
+                self._events = [*events, *self._events][-_KEPT:]
+            raise
+
+    def _send_snapshot(self) -> None:
+        snapshot = self._snapshot
+        if snapshot is None:
+            return
+        document = snapshot.model_dump_json().encode()
+        self._store.results.put(self._record.id, self._record.token, document)
+        self._next_snapshot = time.monotonic() + PATIENCE
+        with self._lock:
+            if self._snapshot is snapshot:
+                self._snapshot = None
+
+    def _wanted(self) -> bool:
+        """Write the progress, and see whether this attempt should go on."""
+        record, timings = self._record, self.timings()
+        wanted = self._store.jobs.update(record.id, record.token, self._progress, timings)
+        return wanted and os.getppid() == self._parent
+
+    def _last(self) -> EngineEvent | None:
+        return self._events[-1] if self._events else None
 
     def _news(self, event: EngineEvent, now: float) -> dict[str, object]:
         if isinstance(event, StageStarted):
@@ -104,36 +156,3 @@ class Reporter:
             names = {"mesh", "segments", "objective", "max_error"}
             return event.model_dump(include=names)
         return event.model_dump(include={"mesh", "iteration", "objective", "violation"})
-
-
-class StopFlag:
-    """Whether the engine should stop: cancelled, overtaken by another attempt, or an orphan."""
-
-    def __init__(self, store: Store, record: JobRecord, reporter: Reporter) -> None:
-        self._store = store
-        self._record = record
-        self._reporter = reporter
-        self._parent = os.getppid()
-        self._next = 0.0
-        self._stop = False
-
-    def __call__(self) -> bool:
-        """Ask; the store is looked at ten times a second at most."""
-        now = time.monotonic()
-        if self._stop or now < self._next:
-            return self._stop
-        self._next = now + EVERY
-        try:
-            self._stop = self._asked()
-        except StoreUnavailable:
-            self._next = time.monotonic() + _AWAY
-        return self._stop
-
-    def _asked(self) -> bool:
-        if self._reporter.stale or os.getppid() != self._parent:
-            return True
-        try:
-            record = self._store.jobs.get(self._record.id)
-        except UnknownJob:
-            return True
-        return record.status is not JobStatus.RUNNING or record.token != self._record.token

@@ -17,7 +17,7 @@ from schemas.results import Solution
 from store.ports import JobRecord, Store
 from worker import limits, outcomes
 from worker.outcomes import Outcome
-from worker.reporting import Reporter, StopFlag
+from worker.reporting import Reporter
 
 logger = logging.getLogger("footfall.worker")
 
@@ -66,12 +66,12 @@ class Runner:
     def _attempt(self, record: JobRecord, problem: bytes, reporter: Reporter) -> Outcome:
         deadline = time.monotonic() + record.seconds
         try:
-            with limits.memory(record.megabytes):
+            with reporter.talking(), limits.memory(record.megabytes):
                 solution = self.engine(
                     read_problem(problem),
                     on_event=reporter,
                     deadline=deadline,
-                    should_stop=StopFlag(self.glance, record, reporter),
+                    should_stop=lambda: reporter.stop,
                     on_snapshot=reporter.snapshot,
                 )
         except Exception as error:  # noqa: BLE001 - whatever the engine does, the job must end
@@ -81,15 +81,13 @@ class Runner:
     def _finish(
         self, record: JobRecord, problem: bytes, outcome: Outcome, reporter: Reporter
     ) -> None:
-        """The result first, then the state that promises it."""
+        """The result first, then the state that promises it; what nobody waits for comes last."""
         solution = outcome.solution
-        reporter.flush(last=True)
-        if solution is not None:
-            result = solution.model_dump_json().encode()
-            report = self._report(record.id, result, problem)
-            if not self.store.results.put(record.id, record.token, result, report):
-                logger.warning("job %s was taken over by another attempt", record.id)
-                return
+        reporter.finish(with_snapshot=solution is None)
+        result = solution.model_dump_json().encode() if solution else None
+        if result and not self.store.results.put(record.id, record.token, result):
+            logger.warning("job %s was taken over by another attempt", record.id)
+            return
         moved = self.store.jobs.move(
             record.id,
             outcome.to,
@@ -111,13 +109,15 @@ class Runner:
         how = solution.status if solution else outcome.error.type if outcome.error else ""
         logger.info("job %s: %s (%s) after %.2f s", record.id, outcome.to, how, seconds)
         self._to_disk(record.id)
+        if result:
+            self._report(record, result, problem)
 
-    def _report(self, job_id: str, result: bytes, problem: bytes) -> bytes | None:
+    def _report(self, record: JobRecord, result: bytes, problem: bytes) -> None:
         try:
-            return self.render(json.loads(result), json.loads(problem)).encode()
-        except Exception:  # the page is an extra; the result must not be lost for it
-            logger.exception("job %s: the report could not be made", job_id)
-            return None
+            page = self.render(json.loads(result), json.loads(problem)).encode()
+            self.store.results.put_report(record.id, record.token, page)
+        except Exception:  # the page is an extra; the job has ended well without it
+            logger.exception("job %s: the report could not be made", record.id)
 
     def _to_disk(self, job_id: str) -> None:
         try:

@@ -1,5 +1,6 @@
 """What a job has made: the result, the trajectory resampled from it, the report."""
 
+import logging
 from typing import Annotated, Any
 
 import orjson
@@ -11,11 +12,13 @@ from api.negotiation import choose
 from api.openapi import errors, texts
 from api.trajectory import CSV, JSON, NPZ, Grid, Trajectory, encode, sample
 from api.views import etag, matches
+from footfall.report import render
 from schemas.errors import NoResult, ResultExpired, ResultNotReady
 from schemas.jobs import TERMINAL, JobStatus
 from schemas.results import Solution
 from store.ports import JobRecord
 
+logger = logging.getLogger("footfall.api")
 router = APIRouter(prefix="/v1/jobs/{job_id}", tags=["results"])
 
 REPORT_POLICY = (
@@ -85,11 +88,24 @@ def get_trajectory(
 )
 def get_report(ctx: Ctx, record: OwnJob) -> Response:
     """A self-contained page about the result."""
-    page = ctx.store.results.report(record.id)
+    page = ctx.store.results.report(record.id) or _drawn(ctx, record)
     if page is None:
         raise _absent(record, "report")
     headers = {"Content-Security-Policy": REPORT_POLICY, "Cache-Control": "private, no-cache"}
     return Response(page, headers=headers, media_type="text/html")
+
+
+def _drawn(ctx: Context, record: JobRecord) -> bytes | None:
+    """The page, where the worker has not made it yet, or was killed and has left a result only."""
+    result = ctx.store.results.get(record.id) if record.status in TERMINAL else None
+    if result is None:
+        return None
+    problem = ctx.store.jobs.problem(record.id)
+    try:
+        return render(orjson.loads(result), orjson.loads(problem)).encode()
+    except Exception:  # as in the worker: the page is an extra, and its lack has an answer
+        logger.exception("job %s: the report could not be made", record.id)
+        return None
 
 
 def _result(ctx: Context, record: JobRecord) -> bytes:

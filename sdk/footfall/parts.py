@@ -11,32 +11,39 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO
 
-from footfall.errors import ServeFailed
-
 _BRIEF = 5.0
-"""Seconds; what ends sooner, again and again, will not do better."""
+"""Seconds; what ends sooner, again and again, will hardly do better at once."""
 
 _MOST_BRIEF_LIVES = 3
+_LONGEST_PAUSE = 10.0
 _PR_SET_PDEATHSIG = 1
 
 
 @dataclass
 class Lives:
-    """Counts the brief lives of something that is started again."""
+    """When to start something again: at once, and after a few brief lives ever more rarely."""
 
-    name: str
     started: float = field(default_factory=time.monotonic)
     brief: int = 0
+    again: float | None = None
 
-    def ended(self, why: Callable[[], str]) -> None:
-        """It ended. Raises ``ServeFailed`` with the reason where another start is no use."""
-        self.brief = self.brief + 1 if time.monotonic() - self.started < _BRIEF else 0
-        if self.brief >= _MOST_BRIEF_LIVES:
-            raise ServeFailed(f"{self.name} keeps ending: {why()}")
+    @property
+    def hopeless(self) -> bool:
+        """Whether it has ended soon after each of its last starts."""
+        return self.brief >= _MOST_BRIEF_LIVES
 
-    def again(self) -> None:
-        """It has been started again."""
-        self.started = time.monotonic()
+    def ended(self) -> bool:
+        """It is dead; whether it is time to start it again."""
+        now = time.monotonic()
+        if self.again is None:
+            self.brief = self.brief + 1 if now - self.started < _BRIEF else 0
+            pause = 2.0 ** (self.brief - _MOST_BRIEF_LIVES) if self.hopeless else 0.0
+            self.again = now + min(pause, _LONGEST_PAUSE)
+        return now >= self.again
+
+    def began(self) -> None:
+        """It has been started."""
+        self.started, self.again = time.monotonic(), None
 
 
 class Part:
@@ -49,7 +56,7 @@ class Part:
         self._command = command
         self._log = log
         self._environment = environment
-        self._lives = Lives(name)
+        self.lives = Lives()
         self.process = self._launch()
 
     @property
@@ -57,11 +64,10 @@ class Part:
         """The exit code, negative for a signal; None while it lives."""
         return self.process.poll()
 
-    def revive(self) -> None:
-        """Start it again. Raises ``ServeFailed`` if it keeps ending."""
-        self._lives.ended(lambda: f"with {self.ended}, {self.last_words()}")
+    def start_again(self) -> None:
+        """Start it again after it has ended."""
         self.process = self._launch()
-        self._lives.again()
+        self.lives.began()
 
     def wait(self, until: float) -> bool:
         """Wait for its end until a time of ``time.monotonic``; whether it has ended."""

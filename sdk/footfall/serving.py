@@ -1,32 +1,29 @@
 """A whole service on this machine: queue server, api and workers, started and stopped together.
 
-Each part is a process of its own. The queue server is the embedded one unless a URL is given.
-All of them end with this process, also when it is killed.
+Each part is a process of its own, and is started again if it is killed. The queue server is the
+embedded one unless a URL is given. All of them end with this process, also when it is killed.
 """
 
-import ctypes
 import os
-import signal
 import socket
-import subprocess
 import sys
 import time
 from collections.abc import Callable
-from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import IO, Self
+from typing import Any, Self
 
 import httpx
 
 from footfall import local
 from footfall.errors import ServeFailed
+from footfall.parts import Lives, Part
 
 _READY_SECONDS = 30.0
-_STOP_SECONDS = 4.0
-_BRIEF = 5.0  # seconds; a worker that ends sooner, again and again, will not do better
-_MOST_BRIEF_LIVES = 3
-_PR_SET_PDEATHSIG = 1
+_END_SECONDS = 3.0
+"""For running jobs to end; what still runs then is handed back, for the next start."""
+
+_HAND_BACK_SECONDS = 1.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,27 +38,15 @@ class ServeSettings:
 
 
 @dataclass
-class _Part:
-    """One child process, its command, its log, and when it was started."""
-
-    name: str
-    command: list[str]
-    log: Path
-    process: subprocess.Popen[bytes]
-    started: float
-    brief_lives: int = 0
-
-
-@dataclass
 class Service:
     """A service over ``settings``; a context manager that has started when it is entered."""
 
     settings: ServeSettings
     say: Callable[[str], object] = lambda _: None
     url: str = ""
-    _environment: dict[str, str] = field(default_factory=dict)
-    _parts: list[_Part] = field(default_factory=list)
-    _stack: ExitStack = field(default_factory=ExitStack)
+    _server: Any = None
+    _server_lives: Lives = field(default_factory=Lives)
+    _parts: list[Part] = field(default_factory=list)
 
     def __enter__(self) -> Self:
         try:
@@ -76,104 +61,101 @@ class Service:
 
     def stop(self) -> None:
         """Stop the parts in order; the queue server last. Accepted jobs stay on disk."""
-        for part in reversed(self._parts):
-            part.process.terminate()
-        end = time.monotonic() + _STOP_SECONDS
-        for part in reversed(self._parts):
-            try:
-                part.process.wait(max(0.1, end - time.monotonic()))
-            except subprocess.TimeoutExpired:  # a long solve; its job is taken up next time
-                part.process.kill()
-                part.process.wait()
+        living = self._parts[::-1]
+        for seconds in (_END_SECONDS, _HAND_BACK_SECONDS):
+            for part in living:
+                part.process.terminate()
+            end = time.monotonic() + seconds
+            living = [part for part in living if not part.wait(end)]
+        for part in living:
+            part.process.kill()
+            part.process.wait()
         self._parts.clear()
-        self._stack.close()
+        if self._server is not None:
+            self._server.stop()
 
     def watch(self) -> None:
-        """Look after the parts: a dead worker is started again. Raises ``ServeFailed``."""
+        """Look after the parts: what was killed is started again.
+
+        Raises
+        ------
+        ServeFailed
+            If the api has ended for a reason of its own, or the queue server does not start.
+        """
+        if self._server is not None and not self._server.running and self._server_lives.ended():
+            self.say("the queue server was killed and is started again")
+            self._start_server()
         for part in self._parts:
-            code = part.process.poll()
-            if code is None:
-                continue
-            if part.name == "api":
-                raise ServeFailed(f"The api ended with {code}: {_last_words(part.log)}")
-            self._revive(part, code)
+            self._look_after(part)
+
+    def _look_after(self, part: Part) -> None:
+        code = part.ended
+        if code is None:
+            return
+        if part.name == "api" and code >= 0:
+            raise ServeFailed(f"The api ended with {code}: {part.last_words()}")
+        if part.lives.ended():
+            self.say(f"{part.name} ended with {code} and is started again: {part.last_words()}")
+            part.start_again()
 
     def _start(self) -> None:
         local.check_server_packages()
         port = _free_port(self.settings.host, self.settings.port)
-        self.settings.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        _make(self.settings.folder)
         self.url = f"http://{_reachable(self.settings.host)}:{port}"
-        self._environment = os.environ | {
-            "REDIS_URL": self.settings.redis_url or self._queue(),
+        if not self.settings.redis_url:
+            self._server = local.queue_server(self.settings.folder)
+            self._start_server()
+        environment = os.environ | {
+            "REDIS_URL": self.settings.redis_url or self._server.url,
             "FOOTFALL_HOST": self.settings.host,
             "FOOTFALL_PORT": str(port),
         }
-        self._spawn("api", "api")
-        for number in range(1, self.settings.workers + 1):
-            self._spawn(f"worker-{number}", "worker")
+        names = [f"worker-{number}" for number in range(1, self.settings.workers + 1)]
+        for name in ("api", *names):
+            command = [sys.executable, "-P", "-m", name.partition("-")[0]]
+            log = self.settings.folder / f"{name}.log"
+            self._parts.append(Part(name, command, log, environment))
         self._wait_until_ready()
 
-    def _queue(self) -> str:
+    def _start_server(self) -> None:
         with local.starting():
-            server = self._stack.enter_context(local.queue_server(self.settings.folder))
-        return str(server.url)
-
-    def _spawn(self, name: str, module: str) -> None:
-        command = [sys.executable, "-P", "-m", module]
-        log = self.settings.folder / f"{name}.log"
-        process = _launch(command, log, self._environment)
-        self._parts.append(_Part(name, command, log, process, time.monotonic()))
-
-    def _revive(self, part: _Part, code: int) -> None:
-        brief = time.monotonic() - part.started < _BRIEF
-        part.brief_lives = part.brief_lives + 1 if brief else 0
-        if part.brief_lives >= _MOST_BRIEF_LIVES:
-            raise ServeFailed(f"{part.name} keeps ending with {code}: {_last_words(part.log)}")
-        self.say(f"{part.name} ended with {code} and is started again")
-        part.process = _launch(part.command, part.log, self._environment)
-        part.started = time.monotonic()
+            self._server.start()
+        self._server_lives.began()
 
     def _wait_until_ready(self) -> None:
         path = "/readyz" if self.settings.workers else "/livez"
-        end = time.monotonic() + _READY_SECONDS
-        with httpx.Client(base_url=self.url, timeout=2.0, trust_env=False) as client:
+        end, why = time.monotonic() + _READY_SECONDS, ""
+        with httpx.Client(base_url=self.url, timeout=6.0, trust_env=False) as client:
             while time.monotonic() < end:
                 self.watch()
+                self._give_up_on_the_hopeless()
                 try:
-                    if client.get(path).is_success:
-                        return
+                    reply = client.get(path)
                 except httpx.TransportError:
                     pass  # it does not listen yet
+                else:
+                    if reply.is_success:
+                        return
+                    why = f" {reply.json().get('detail', '')}"
                 time.sleep(0.05)
         raise ServeFailed(
-            f"The service was not ready within {_READY_SECONDS:g} s.",
+            f"The service was not ready within {_READY_SECONDS:g} s.{why}",
             f"Its logs are in {self.settings.folder}.",
         )
 
-
-def _launch(command: list[str], log: Path, environment: dict[str, str]) -> subprocess.Popen[bytes]:
-    with log.open("ab") as out:
-        return subprocess.Popen(  # noqa: S603 - our own interpreter and modules
-            command,
-            env=environment,
-            stdin=subprocess.DEVNULL,
-            stdout=out,
-            stderr=out,
-            process_group=0,  # Ctrl-C is for us; we then stop the parts in order
-            preexec_fn=_dying_with_parent(),  # noqa: PLW1509 - one system call, made ready before
-        )
+    def _give_up_on_the_hopeless(self) -> None:
+        for part in self._parts:
+            if part.lives.hopeless:
+                raise ServeFailed(f"{part.name} keeps ending: {part.last_words()}")
 
 
-def _dying_with_parent() -> Callable[[], None] | None:
-    """To run between fork and exec: let the kernel end the child with its parent (Linux)."""
-    if sys.platform != "linux":
-        return None
-    prctl = ctypes.CDLL(None).prctl
-
-    def ask() -> None:
-        prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
-
-    return ask
+def _make(folder: Path) -> None:
+    try:
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    except OSError as error:
+        hint = "Choose another folder with --data-dir."
+        raise ServeFailed(f"Cannot use the folder {folder}: {error.strerror}.", hint) from error
 
 
 def _reachable(host: str) -> str:
@@ -193,17 +175,3 @@ def _free_port(host: str, port: int) -> int:
     except OSError as error:
         hint = "Another service may run there; choose another port with --port, or stop it."
         raise ServeFailed(f"Cannot listen on {host}:{port}: {error.strerror}.", hint) from error
-
-
-def _last_words(log: Path) -> str:
-    lines: list[str] = []
-    if log.exists():
-        lines = _tail(log.open("rb")).strip().splitlines()
-    return f"{lines[-1]} (all of it in {log})" if lines else f"see {log}"
-
-
-def _tail(file: IO[bytes]) -> str:
-    with file:
-        file.seek(0, os.SEEK_END)
-        file.seek(max(0, file.tell() - 4000))
-        return file.read().decode(errors="replace")

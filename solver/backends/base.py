@@ -74,4 +74,6 @@ class Backend(ABC):
         ------
         EngineFault
             If the solver itself fails.
+        MemoryError
+            If memory runs out.
         """

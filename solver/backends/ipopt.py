@@ -11,6 +11,7 @@ import numpy as np
 from schemas.errors import EngineFault
 from schemas.problem import SolverSettings
 from solver.backends.base import Backend, NlpStatus, Outcome
+from solver.backends.memory import memory_watch
 from solver.backends.watch import FEASIBLE, Iterate, StopCause, Watch
 from solver.nlp.task import NlpTask
 
@@ -34,6 +35,7 @@ STATUSES: Mapping[str, NlpStatus] = MappingProxyType(
 )
 """What IPOPT returns -> the neutral status. Anything else is a fault of the engine."""
 
+_SETTLED = ("Solve_Succeeded", "Solved_To_Acceptable_Level", "User_Requested_Stop")
 _ENDED_EARLY = (NlpStatus.STOPPED, NlpStatus.TIME_LIMIT, NlpStatus.ITERATION_LIMIT)
 
 _CAUSES = {
@@ -63,28 +65,28 @@ class Ipopt(Backend):
     ) -> Outcome:
         """Solve by interior points; the callback sees each iterate."""
         callback = _Callback(task, watch)
-        solver = ca.nlpsol(
-            "ipopt",
-            "ipopt",
-            {"x": task.nlp.symbols, "f": task.nlp.objective, "g": task.nlp.rows},
-            {
-                **_options(settings, watch, warm=warm),
-                **task.nlp.derivatives(),
-                "iteration_callback": callback,
-            },
-        )
-        began = time.perf_counter()
-        result = solver(
-            x0=task.start,
-            lbx=task.lower,
-            ubx=task.upper,
-            lbg=task.row_lower,
-            ubg=task.row_upper,
-        )
-        seconds = time.perf_counter() - began
+        options = {**_options(settings, watch, warm=warm), **task.nlp.derivatives()}
+        with memory_watch(options) as check_memory:
+            solver = ca.nlpsol(
+                "ipopt",
+                "ipopt",
+                {"x": task.nlp.symbols, "f": task.nlp.objective, "g": task.nlp.rows},
+                {**options, "iteration_callback": callback},
+            )
+            began = time.perf_counter()
+            result = solver(
+                x0=task.start,
+                lbx=task.lower,
+                ubx=task.upper,
+                lbg=task.row_lower,
+                ubg=task.row_upper,
+            )
+            seconds = time.perf_counter() - began
+            raw = str(solver.stats()["return_status"])
+            if raw not in _SETTLED:
+                check_memory()
         if watch.fault is not None:
             raise watch.fault
-        raw = str(solver.stats()["return_status"])
         if raw not in STATUSES:
             raise EngineFault(f"IPOPT ended with {raw}.", "Please report this problem.")
         z, rows = result["x"].full().ravel(), result["g"].full().ravel()

@@ -142,13 +142,23 @@ def _dependent_rows(tests: Sequence[tuple[Matrix, Array]], shared: NDArray[np.bo
     return suspects
 
 
+def _factors(matrix: Matrix, **options: Any) -> Any:
+    """A sparse LU; SuperLU reports missing memory as a RuntimeError of its own."""
+    try:
+        return splu(matrix, **options)
+    except RuntimeError as error:
+        if "MALLOC" in str(error):
+            raise MemoryError("the search for implied equalities ran out of memory") from error
+        raise
+
+
 def _vanishing_pivots(matrix: Matrix) -> Indices:
     """Rows in the span of those before them, by the pivots of A A' in order."""
     if matrix.shape[0] == 0:
         return np.array([], dtype=int)
     gram = sparse.csc_array(matrix @ matrix.T + _TRIFLE * sparse.eye_array(matrix.shape[0]))
     options = {"SymmetricMode": True}
-    factors = splu(gram, permc_spec="NATURAL", diag_pivot_thresh=0.0, options=options)
+    factors = _factors(gram, permc_spec="NATURAL", diag_pivot_thresh=0.0, options=options)
     return np.flatnonzero(np.abs(factors.U.diagonal()) < _PIVOT)
 
 
@@ -162,7 +172,7 @@ def _deviations(matrix: Matrix, values: Array, rows: Indices) -> tuple[Array, Ar
     others = np.setdiff1d(np.arange(matrix.shape[0]), rows)
     basis, width = matrix[others], matrix.shape[1]
     corner = -_TRIFLE * sparse.eye_array(len(others))
-    factors = splu(
+    factors = _factors(
         sparse.block_array([[sparse.eye_array(width), basis.T], [basis, corner]]).tocsc()
     )
     distances, gaps = [], []

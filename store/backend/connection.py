@@ -12,6 +12,7 @@ from redis.exceptions import (
     OutOfMemoryError,
     ReadOnlyError,
     RedisError,
+    ResponseError,
     TimeoutError,  # noqa: A004
 )
 from redis.retry import Retry
@@ -27,17 +28,25 @@ def open_client(url: str, patience: Patience) -> "Redis":
     """A client; it connects on its first command.
 
     ``url`` is ``redis://[user:password@]host:port/db``, ``rediss://...`` or ``unix:///socket``.
+    Raises StoreUnavailable if it is none of these.
     """
-    return Redis.from_url(
-        url,
-        retry=Retry(
-            ExponentialWithJitterBackoff(base=patience.first_pause, cap=patience.longest_pause),
-            patience.tries,
-        ),
-        socket_timeout=patience.reply,
-        socket_connect_timeout=min(patience.reply, 2.0),
-        health_check_interval=0,
-    )
+    again = (ConnectionError, TimeoutError) if patience.silence else (ConnectionError,)
+    pauses = ExponentialWithJitterBackoff(base=patience.first_pause, cap=patience.longest_pause)
+    try:
+        return Redis.from_url(
+            url,
+            retry=Retry(pauses, patience.tries, again),
+            socket_timeout=patience.reply,
+            socket_connect_timeout=min(patience.reply, 2.0),
+            health_check_interval=0,
+            driver_info=None,  # it would read redis-py's version from disk for each connection
+        )
+    except ValueError:  # its words may hold a part of the password
+        raise StoreUnavailable(
+            "REDIS_URL is not the URL of a queue server.",
+            "Write redis://[user:password@]host:port/db, rediss://... or unix:///socket; "
+            "in a password, %-encode all but letters and digits.",
+        ) from None
 
 
 def translated(method: Callable[P, R]) -> Callable[P, R]:
@@ -63,6 +72,12 @@ def unavailable(error: RedisError) -> Exception:
         return StoreUnavailable(
             "The queue server is out of memory.", "Give it more, or forget some results."
         )
+    if isinstance(error, ResponseError) and "MISCONF" in str(error):
+        return StoreUnavailable(
+            "The queue server cannot write to its disk.", "Make room on the disk that it writes to."
+        )
+    if isinstance(error, ResponseError) and "HELLO" in str(error):  # the first word of redis-py
+        return StoreUnavailable("The queue server is too old.", "Run Redis or Valkey 6.2 or later.")
     if isinstance(error, ConnectionError | TimeoutError | ReadOnlyError):
         return StoreUnavailable(f"The queue server does not answer: {error}", "Try again later.")
     return error

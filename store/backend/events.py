@@ -1,6 +1,6 @@
 """Event logs as Redis streams, capped; nothing comes after the terminal event, so it stays."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any, cast
 
 from redis import Redis
@@ -25,13 +25,14 @@ class RedisEvents:
         self._notifier = Notifier(client)
 
     @translated
-    def append(self, job_id: str, event: Event, token: str | None = None) -> str:
-        """Add an event."""
+    def append(self, job_id: str, events: Sequence[Event], token: str) -> bool:
+        """Add events."""
+        texts = [event.model_dump_json() for event in events]
         added = self._append(
             keys=[keys.record(job_id), keys.events(job_id)],
-            args=[job_id, token or "", event.model_dump_json(), self._limit, keys.CHANGED],
+            args=[job_id, token, self._limit, keys.CHANGED, *texts],
         )
-        return cast(bytes, added).decode()
+        return bool(added)
 
     @translated
     def read(self, job_id: str, after: str = "0") -> list[LoggedEvent]:

@@ -9,22 +9,24 @@ from store.backend.connection import translated
 
 
 class RedisResults:
-    """Fills the port ``Results``. The move that ends the job sets the time they are kept."""
+    """Fills the port ``Results``. The move that ends the job sets the time a result is kept."""
 
     def __init__(self, client: Redis) -> None:
         self._client = client
         self._put = client.register_script(scripts.PUT)
+        self._put_report = client.register_script(scripts.PUT_REPORT)
 
     @translated
-    def put(self, job_id: str, token: str, result: bytes, report: bytes | None = None) -> bool:
+    def put(self, job_id: str, token: str, result: bytes) -> bool:
         """Store for the live attempt."""
-        names = [keys.record(job_id), keys.result(job_id), keys.report(job_id)]
-        packed = b"" if report is None else codec.pack(report)
-        return bool(self._put(keys=names, args=[token, codec.pack(result), packed]))
+        names = [keys.record(job_id), keys.result(job_id)]
+        return bool(self._put(keys=names, args=[token, codec.pack(result)]))
 
-    def snapshot(self, job_id: str, token: str, result: bytes) -> bool:
-        """Store what there is so far, in the result's place."""
-        return self.put(job_id, token, result)
+    @translated
+    def put_report(self, job_id: str, token: str, report: bytes) -> bool:
+        """Store beside the result."""
+        names = [keys.record(job_id), keys.result(job_id), keys.report(job_id)]
+        return bool(self._put_report(keys=names, args=[token, codec.pack(report)]))
 
     @translated
     def get(self, job_id: str) -> bytes | None:

@@ -29,28 +29,43 @@ return 1
 """
 
 UPDATE = """
--- Fields of the live attempt. KEYS: record. ARGV: token, field, value, ...
+-- Fields of the live attempt; 1 if it should go on. KEYS: record. ARGV: token, field, value, ...
+local status = redis.call('HGET', KEYS[1], 'status')
+if status ~= 'running' and status ~= 'cancelling' then return 0 end
 if redis.call('HGET', KEYS[1], 'token') ~= ARGV[1] then return 0 end
 redis.call('HSET', KEYS[1], unpack(ARGV, 2))
+if status == 'cancelling' then return 0 end
 return 1
 """
 
 PUT = """
--- The result of the live attempt. KEYS: record, result, report. ARGV: token, result, report
+-- The result of the live attempt. KEYS: record, result. ARGV: token, result
 local status = redis.call('HGET', KEYS[1], 'status')
 if status ~= 'running' and status ~= 'cancelling' then return 0 end
 if redis.call('HGET', KEYS[1], 'token') ~= ARGV[1] then return 0 end
 redis.call('SET', KEYS[2], ARGV[2])
-if ARGV[3] == '' then redis.call('DEL', KEYS[3]) else redis.call('SET', KEYS[3], ARGV[3]) end
 redis.call('HSET', KEYS[1], 'has_result', '1')
 return 1
 """
 
+PUT_REPORT = """
+-- The report of an ended job; it goes when the result goes, which has its time set by then.
+-- KEYS: record, result, report. ARGV: token, report
+if redis.call('HGET', KEYS[1], 'token') ~= ARGV[1] then return 0 end
+local left = redis.call('PTTL', KEYS[2])
+if left <= 0 then return 0 end
+redis.call('SET', KEYS[3], ARGV[2], 'PX', left)
+return 1
+"""
+
 APPEND = """
--- An event. KEYS: record, events. ARGV: id, token or '', event, limit, channel
-local token = redis.call('HGET', KEYS[1], 'token')
-if not token or (ARGV[2] ~= '' and token ~= ARGV[2]) then return '' end
-local id = redis.call('XADD', KEYS[2], 'MAXLEN', '~', ARGV[4], '*', 'event', ARGV[3])
-redis.call('PUBLISH', ARGV[5], ARGV[1])
-return id
+-- Events of the live attempt. KEYS: record, events. ARGV: id, token, limit, channel, event, ...
+local status = redis.call('HGET', KEYS[1], 'status')
+if status ~= 'running' and status ~= 'cancelling' then return 0 end
+if redis.call('HGET', KEYS[1], 'token') ~= ARGV[2] then return 0 end
+for i = 5, #ARGV do
+  redis.call('XADD', KEYS[2], 'MAXLEN', '~', ARGV[3], '*', 'event', ARGV[i])
+end
+redis.call('PUBLISH', ARGV[4], ARGV[1])
+return 1
 """

@@ -1,7 +1,7 @@
 """Results, events and idempotency keys in memory."""
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 from schemas.errors import Conflict
@@ -20,7 +20,7 @@ class MemoryResults:
     def __init__(self, shelf: Shelf) -> None:
         self._shelf = shelf
 
-    def put(self, job_id: str, token: str, result: bytes, report: bytes | None = None) -> bool:
+    def put(self, job_id: str, token: str, result: bytes) -> bool:
         """Store for the live attempt."""
         with self._shelf.lock:
             entry = self._shelf.entries.get(job_id)
@@ -28,13 +28,20 @@ class MemoryResults:
                 return False
             if entry.record.status not in _WORKED_ON:
                 return False
-            entry.result, entry.report = result, report
+            entry.result = result
             entry.record = replace(entry.record, has_result=True)
             return True
 
-    def snapshot(self, job_id: str, token: str, result: bytes) -> bool:
-        """Store what there is so far, in the result's place."""
-        return self.put(job_id, token, result)
+    def put_report(self, job_id: str, token: str, report: bytes) -> bool:
+        """Store beside the result."""
+        with self._shelf.lock:
+            entry = self._shelf.entries.get(job_id)
+            if entry is None or entry.record.token != token or entry.result is None:
+                return False
+            if entry.record.status not in TERMINAL:
+                return False
+            entry.report = report
+            return True
 
     def get(self, job_id: str) -> bytes | None:
         """The result's JSON, or None."""
@@ -55,13 +62,17 @@ class MemoryEvents:
     def __init__(self, shelf: Shelf) -> None:
         self._shelf = shelf
 
-    def append(self, job_id: str, event: Event, token: str | None = None) -> str:
-        """Add an event."""
+    def append(self, job_id: str, events: Sequence[Event], token: str) -> bool:
+        """Add events."""
         with self._shelf.lock:
             entry = self._shelf.entries.get(job_id)
-            if entry is None or (token and entry.record.token != token):
-                return ""
-            return self._shelf.log(job_id, event)
+            if entry is None or entry.record.token != token:
+                return False
+            if entry.record.status not in _WORKED_ON:
+                return False
+            for event in events:
+                self._shelf.log(job_id, event)
+            return True
 
     def read(self, job_id: str, after: str = "0") -> list[LoggedEvent]:
         """The events after an id, at once."""

@@ -142,8 +142,10 @@ class MemoryJobs:
             entry = self._shelf.entries.get(job_id)
             if entry is None or entry.record.token != token:
                 return False
-            entry.record = replace(entry.record, progress=progress, timings=timings)
-            return True
+            status = entry.record.status
+            if status in (JobStatus.RUNNING, JobStatus.CANCELLING):
+                entry.record = replace(entry.record, progress=progress, timings=timings)
+            return status is JobStatus.RUNNING
 
     def delete(self, job_id: str, owner: str) -> None:
         """Forget an ended job."""

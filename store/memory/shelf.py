@@ -38,14 +38,13 @@ class Shelf:
             raise UnknownJob(f"There is no job {job_id!r}.", "List yours with GET /v1/jobs.")
         return self.entries[job_id]
 
-    def log(self, job_id: str, event: Event) -> str:
-        """Append an event, wake the followers; the event's id."""
+    def log(self, job_id: str, event: Event) -> None:
+        """Append an event, wake the followers."""
         entry = self.entry(job_id)
         entry.logged += 1
         logged = LoggedEvent(f"{entry.logged}-0", event)
         entry.events = [*entry.events, logged][-self.settings.events_limit :]
         self.wake(job_id)
-        return logged.id
 
     def wake(self, job_id: str) -> None:
         """Wake those who follow this job."""

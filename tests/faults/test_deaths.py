@@ -9,13 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from schemas.events import StateChanged
 from schemas.jobs import JobStatus
 from store import connect
 from store.embedded import EmbeddedServer
 from store.ports import JobRecord, Store
 from store.settings import LONG
-from tests.support.service import WorkerProcess, submit, wait_for, wait_until
+from tests.support.service import WorkerProcess, ends, submit, wait_for, wait_until
 
 Start = Callable[..., WorkerProcess]
 
@@ -34,15 +33,6 @@ def running(store: Store, name: str = "gated") -> str:
 
 def attempted(store: Store, job_id: str, attempts: int) -> None:
     wait_until(lambda: store.jobs.get(job_id).attempts == attempts)
-
-
-def ends(store: Store, job_id: str) -> list[str]:
-    """The states that the log says the job ended in; one if all is well."""
-    return [
-        logged.event.status
-        for logged in store.events.read(job_id)
-        if isinstance(logged.event, StateChanged) and logged.event.terminal
-    ]
 
 
 def assert_one_result(store: Store, job_id: str, attempts: int) -> JobRecord:

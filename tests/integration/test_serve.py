@@ -6,7 +6,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +17,7 @@ import pytest
 import examples
 from footfall import Client, Event
 from footfall.cli import main
-from footfall.errors import BadProblem, UnknownJob
+from footfall.errors import BadProblem, FootfallError, UnknownJob
 from tests.support.service import wait_until
 
 
@@ -159,6 +159,44 @@ def test_a_dead_worker_is_started_again(service: tuple[str, int], client: Client
     os.kill(worker, signal.SIGKILL)
     job = client.submit(examples.load("block_min_force"))
     assert client.wait(job.id, timeout=60).converged
+
+
+def longer_than_a_moment() -> dict[str, Any]:
+    problem = examples.load("cart_pole") | {"refinement": None}
+    problem["method"] = {"kind": "hermite_simpson", "segments": 1500}
+    return problem | {"solver": {"tolerance": 1e-12}}
+
+
+def attempts(client: Client, job_id: str) -> int:
+    """How many have begun; 0 while the service cannot say."""
+    with suppress(FootfallError):
+        return client.job(job_id).attempts
+    return 0
+
+
+def test_a_killed_api_and_queue_server_are_started_again(
+    service: tuple[str, int], client: Client
+) -> None:
+    """The solve goes on meanwhile, and what waits is not lost."""
+    running = client.submit(longer_than_a_moment())
+    waiting = client.submit(examples.load("block_min_force"))
+    wait_until(lambda: attempts(client, running.id) == 1)
+    for part in ("-m api", "valkey-server"):
+        (pid,) = [pid for pid in children(service[1]) if part in command_of(pid)]
+        os.kill(pid, signal.SIGKILL)
+    wait_until(lambda: attempts(client, running.id) == 1, what="the service is back")
+    assert client.wait(running.id, timeout=60).objective == pytest.approx(58.80767, abs=1e-3)
+    assert client.wait(waiting.id, timeout=60).converged
+    assert [attempts(client, job.id) for job in (running, waiting)] == [1, 1]
+
+
+def test_a_stopped_service_hands_back_what_runs(tmp_path: Path) -> None:
+    with serving(tmp_path) as (url, _), Client(url) as client:
+        job = client.submit(slow_problem())
+        wait_until(lambda: attempts(client, job.id) == 1)
+    with serving(tmp_path) as (url, _), Client(url) as client:
+        wait_until(lambda: attempts(client, job.id) == 2, 3, "it begins at once")
+        client.cancel(job.id)
 
 
 def test_jobs_outlive_the_service_and_nothing_else_does(tmp_path: Path) -> None:

@@ -34,7 +34,7 @@ def test_a_job_goes_through(queue_store: Store, start_worker: Start) -> None:
     result = queue_store.results.get(record.id)
     assert result is not None
     assert json.loads(result)["name"] == "quick"
-    assert queue_store.results.report(record.id) == b"<html>quick</html>"
+    wait_until(lambda: queue_store.results.report(record.id) == b"<html>quick</html>")
 
 
 def test_the_real_engine_moves_a_block(queue_store: Store, start_worker: Start) -> None:
@@ -49,7 +49,7 @@ def test_the_real_engine_moves_a_block(queue_store: Store, start_worker: Start) 
     events = [logged.event for logged in queue_store.events.read(job_id)]
     assert any(isinstance(event, MeshSolved) for event in events)
     assert isinstance(events[-1], StateChanged)
-    assert (queue_store.results.report(job_id) or b"").startswith(b"<!")
+    wait_until(lambda: (queue_store.results.report(job_id) or b"").startswith(b"<!"))
 
 
 def test_jobs_wait_for_a_worker(queue_store: Store, start_worker: Start) -> None:

@@ -13,6 +13,7 @@ from typing import Any, TypeVar
 
 import pytest
 
+from schemas.events import StateChanged
 from schemas.jobs import TERMINAL, JobStatus
 from schemas.reading import canonical, read_problem
 from store import connect
@@ -86,6 +87,15 @@ def wait_for(store: Store, job_id: str, *states: JobStatus, seconds: float = 10.
         return record if record.status in wanted else None
 
     return wait_until(look, seconds, f"{job_id} in {sorted(wanted)}")
+
+
+def ends(store: Store, job_id: str) -> list[str]:
+    """The states that the log says the job ended in; one if all is well."""
+    return [
+        logged.event.status
+        for logged in store.events.read(job_id)
+        if isinstance(logged.event, StateChanged) and logged.event.terminal
+    ]
 
 
 class WorkerProcess:

@@ -36,7 +36,7 @@ class Hand:
         event = NlpIteration(mesh=0, iteration=iteration, objective=1.5, violation=0.1, seconds=0.2)
         progress = Progress(stage="solve", segments=10, iteration=iteration, objective=1.5)
         self.store.jobs.update(record.id, record.token, progress, JobTimings(queued=0.1))
-        self.store.events.append(record.id, event)
+        self.store.events.append(record.id, [event], record.token)
 
     def end(
         self,

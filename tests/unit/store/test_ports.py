@@ -11,7 +11,7 @@ import pytest
 
 import store.memory
 from schemas.errors import BadProblem, Conflict, QueueFull, UnknownJob
-from schemas.events import NlpIteration, StateChanged
+from schemas.events import NlpIteration, StageStarted, StateChanged
 from schemas.jobs import JobError, JobStatus, JobTimings, Progress
 from store import connect
 from store.ports import KEY_IN_FLIGHT, KEY_REUSED, JobRecord, LoggedEvent, Store
@@ -165,7 +165,7 @@ def test_a_lost_attempt_goes_back_and_its_token_is_dead(ports: Store) -> None:
     assert again.token != token
     assert not ports.results.put("a1", token, b"old")
     assert not ports.jobs.update("a1", token, Progress(iteration=1), JobTimings())
-    assert ports.events.append("a1", StateChanged(status="x", terminal=False), token) == ""
+    assert not ports.events.append("a1", [StateChanged(status="x", terminal=False)], token)
     assert ports.jobs.move("a1", JobStatus.SUCCEEDED, expect=RUNNING, token=token) is None
 
 
@@ -178,19 +178,68 @@ def test_progress_is_kept(ports: Store) -> None:
     assert (record.progress, record.timings.build) == (progress, 0.1)
 
 
+def test_an_update_says_whether_to_go_on(ports: Store) -> None:
+    add(ports)
+    token = run(ports).token
+    last = Progress(stage="solve", iteration=8)
+    assert ports.jobs.move("a1", JobStatus.CANCELLING, expect=RUNNING)
+    assert not ports.jobs.update("a1", token, last, JobTimings())
+    assert ports.jobs.get("a1").progress == last
+    assert ports.jobs.move("a1", JobStatus.CANCELLED, expect=frozenset({JobStatus.CANCELLING}))
+    assert not ports.jobs.update("a1", token, Progress(iteration=9), JobTimings())
+    assert ports.jobs.get("a1").progress == last
+    assert not ports.jobs.update("forgotten", token, last, JobTimings())
+
+
+def test_events_come_in_order_and_none_after_the_end(ports: Store) -> None:
+    add(ports)
+    token = run(ports).token
+    stages = [StageStarted(stage="build"), StageStarted(stage="solve")]
+    assert ports.events.append("a1", stages, token)
+    end(ports)
+    assert not ports.events.append("a1", stages, token)
+    events = [logged.event for logged in ports.events.read("a1")]
+    assert events[2:4] == stages
+    assert statuses(ports.events.read("a1"))[-1] == "succeeded"
+    assert len(events) == 5
+
+
 def test_results_need_a_live_attempt(ports: Store) -> None:
     add(ports)
     assert not ports.results.put("a1", "", b"{}")
     token = run(ports).token
     assert ports.results.get("a1") is None
-    assert ports.results.snapshot("a1", token, b"so far")
+    assert ports.results.put("a1", token, b"so far")
     assert ports.jobs.get("a1").has_result
     assert ports.results.get("a1") == b"so far"
-    assert ports.results.put("a1", token, b"all", b"<html>")
+    assert ports.results.put("a1", token, b"all")
     end(ports)
-    assert (ports.results.get("a1"), ports.results.report("a1")) == (b"all", b"<html>")
     assert not ports.results.put("a1", token, b"too late")
     assert ports.results.get("a1") == b"all"
+
+
+def test_a_report_comes_after_the_end_and_goes_with_the_result(make: Make) -> None:
+    ports = make(StoreSettings(retention=1.0))
+    add(ports)
+    token = run(ports).token
+    ports.results.put("a1", token, b"{}")
+    assert not ports.results.put_report("a1", token, b"too early")
+    end(ports)
+    assert not ports.results.put_report("a1", "another", b"foreign")
+    assert ports.results.report("a1") is None
+    assert ports.results.put_report("a1", token, b"<html>")
+    assert ports.results.report("a1") == b"<html>"
+    wait_until(lambda: ports.jobs.get("a1").status is JobStatus.EXPIRED)
+    wait_until(lambda: ports.results.report("a1") is None)
+    assert not ports.results.put_report("a1", token, b"too late")
+
+
+def test_a_report_needs_a_result(ports: Store) -> None:
+    add(ports)
+    token = run(ports).token
+    end(ports, to=JobStatus.FAILED)
+    assert not ports.results.put_report("a1", token, b"<html>")
+    assert not ports.results.put_report("unknown", "", b"<html>")
 
 
 def test_a_result_has_its_time(make: Make) -> None:
@@ -255,16 +304,19 @@ def test_only_an_ended_job_is_forgotten_and_then_wholly(ports: Store) -> None:
     add(ports)
     with pytest.raises(Conflict):
         ports.jobs.delete("a1", "ann")
-    ports.results.put("a1", run(ports).token, b"{}", b"<html>")
+    token = run(ports).token
+    ports.results.put("a1", token, b"{}")
     end(ports)
+    ports.results.put_report("a1", token, b"<html>")
     ports.jobs.delete("a1", "ann")
     with pytest.raises(UnknownJob):
         ports.jobs.get("a1")
+    assert not ports.results.put_report("a1", token, b"<html>")
     assert (ports.results.get("a1"), ports.results.report("a1")) == (None, None)
     assert ports.events.read("a1") == []
     assert ports.jobs.list("ann").records == []
     assert list(ports.events.follow("a1", timeout=0.1)) == []
-    assert ports.events.append("a1", StateChanged(status="x", terminal=False)) == ""
+    assert not ports.events.append("a1", [StateChanged(status="x", terminal=False)], token)
 
 
 def test_every_move_is_in_the_log(ports: Store) -> None:
@@ -287,7 +339,7 @@ def test_a_follower_sees_what_comes_and_ends_with_the_job(ports: Store) -> None:
         event = NlpIteration(mesh=0, iteration=1, objective=1.0, violation=None, seconds=0.1)
 
         def work() -> None:
-            ports.events.append("a1", event, token)
+            ports.events.append("a1", [event], token)
             end(ports)
 
         later = threading.Timer(0.2, work)
@@ -325,7 +377,7 @@ def test_the_log_is_capped_and_keeps_its_end(make: Make) -> None:
         event = NlpIteration(
             mesh=0, iteration=iteration, objective=None, violation=None, seconds=0.0
         )
-        ports.events.append("a1", event, token)
+        ports.events.append("a1", [event], token)
     end(ports)
     logged = ports.events.read("a1")
     assert len(logged) <= 300  # the server trims in whole nodes

@@ -1,6 +1,11 @@
 """What the store makes of servers that are old, away, or without a disk."""
 
 import logging
+import os
+import signal
+import time
+from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +23,7 @@ from store.backend.connection import open_client, unavailable
 from store.backend.queue import open_queue
 from store.backend.server import Server
 from store.embedded import EmbeddedServer
-from store.settings import NONE
+from store.settings import NONE, SHORT
 from tests.support.service import submit
 
 
@@ -74,8 +79,31 @@ def test_a_server_without_its_file_promises_less(
 def test_foreign_errors_get_our_names() -> None:
     assert "password" in str(unavailable(AuthenticationError("no")))
     assert "memory" in str(unavailable(OutOfMemoryError("full")))
+    assert "disk" in str(unavailable(ResponseError("MISCONF Errors writing to the AOF file")))
+    assert "too old" in str(unavailable(ResponseError("unknown command `HELLO`")))
     bug = ResponseError("ERR unknown command")
     assert unavailable(bug) is bug
+
+
+@pytest.mark.parametrize("url", ["nonsense", "redis://:se#cret@host:6379", "redis://host:port"])
+def test_a_url_that_cannot_be_read_is_not_shown(url: str) -> None:
+    with pytest.raises(StoreUnavailable, match="REDIS_URL") as caught:
+        connect(url)
+    assert url not in f"{caught.value.message} {caught.value.hint}"
+    assert caught.value.__suppress_context__, "the words of the cause may hold the password"
+
+
+def test_a_server_that_hangs_is_asked_once(tmp_path: Path) -> None:
+    """Only a worker asks again: somebody waits for every other answer."""
+    brief = replace(SHORT, reply=0.2)
+    with EmbeddedServer(tmp_path) as server, closing(connect(server.url, patience=brief)) as store:
+        store.ping()
+        os.kill(server.pid, signal.SIGSTOP)
+        began = time.monotonic()
+        with pytest.raises(StoreUnavailable, match="does not answer"):
+            store.queue.length()
+        os.kill(server.pid, signal.SIGCONT)
+    assert 0.2 <= time.monotonic() - began < 1.0
 
 
 def test_only_the_id_travels_and_never_a_pickle(queue_url: str) -> None:

@@ -5,6 +5,7 @@ import json
 import logging
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -23,9 +24,9 @@ from store.backend.queue import TASK
 from store.embedded import url
 from store.ports import JobRecord, Store
 from tests.support.engines import page, scripted, solution
-from tests.support.service import ROOT, submit
+from tests.support.service import ROOT, submit, wait_until
 from worker import logs, outcomes, run
-from worker.reporting import Reporter, StopFlag
+from worker.reporting import Reporter
 from worker.run import RUNNER, Runner
 from worker.settings import server_url
 
@@ -133,41 +134,145 @@ def mesh(number: int) -> MeshSolved:
     )
 
 
-def test_meshes_are_told_after_an_outage_and_iterations_are_not(
+def iteration(number: int) -> NlpIteration:
+    return NlpIteration(mesh=0, iteration=number, objective=None, violation=None, seconds=0.0)
+
+
+def test_what_happened_in_an_outage_is_told_after_it(
     ports: Store, flaky: tuple[Store, dict[str, bool]], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("worker.reporting._AWAY", 0.05)
+    """Every stage and mesh; of each run of iterations the last."""
+    monkeypatch.setattr("worker.reporting.PATIENCE", 0.0)
     record = claimed(ports)
     away, state = flaky
     reporter = Reporter(away, record)
     reporter(StageStarted(stage="solve"))
+    reporter.exchange()
     state["away"] = True
+    for number in range(3):
+        reporter(iteration(number))
+        reporter.exchange()
     reporter(mesh(0))
-    reporter(NlpIteration(mesh=1, iteration=1, objective=None, violation=None, seconds=0.0))
     reporter.snapshot(solution("x", SolutionStatus.CANCELLED))
+    reporter.exchange()
+    assert not ports.jobs.get(record.id).has_result
     state["away"] = False
-    time.sleep(0.06)
     reporter(mesh(1))
-    kinds = [logged.event.type for logged in ports.events.read(record.id)]
-    assert kinds == ["state", "state", "stage", "mesh", "mesh"]
-    assert not reporter.stale
+    reporter.exchange()
+    events = [logged.event for logged in ports.events.read(record.id)]
+    kinds = [event.type for event in events]
+    assert kinds == ["state", "state", "stage", "nlp_iteration", "mesh", "mesh"]
+    assert events[3] == iteration(2)
+    assert ports.jobs.get(record.id).has_result
+    assert not reporter.stop
 
 
-def test_the_stop_flag_sees_a_cancel_and_survives_an_outage(
-    ports: Store, flaky: tuple[Store, dict[str, bool]], monkeypatch: pytest.MonkeyPatch
+def test_the_engine_never_waits_for_the_store(ports: Store) -> None:
+    """The store hangs; it is talked to from another thread."""
+    asked, hangs = threading.Event(), threading.Event()
+
+    class Hanging:
+        def append(self, *_: object) -> bool:
+            asked.set()
+            return hangs.wait(5.0)
+
+    record = claimed(ports)
+    reporter = Reporter(replace(ports, events=cast(Any, Hanging())), record)
+    with reporter.talking():
+        reporter(mesh(0))
+        assert asked.wait(2.0)
+        began = time.monotonic()
+        for number in range(100):
+            reporter(iteration(number))
+            reporter.snapshot(solution("x", SolutionStatus.CANCELLED))
+        assert time.monotonic() - began < 0.1
+        hangs.set()
+
+
+def stored(ports: Store, record: JobRecord) -> str | None:
+    """The name in the stored result or snapshot."""
+    result = ports.results.get(record.id)
+    return None if result is None else json.loads(result)["name"]
+
+
+def test_a_solve_that_lasts_leaves_snapshots(ports: Store) -> None:
+    record = claimed(ports)
+    reporter = Reporter(ports, record)
+    with reporter.talking():
+        reporter.snapshot(solution("first", SolutionStatus.CANCELLED))
+        wait_until(lambda: stored(ports, record) == "first", seconds=2.0)
+        reporter.snapshot(solution("second", SolutionStatus.CANCELLED))
+        wait_until(lambda: stored(ports, record) == "second", seconds=2.0)
+
+
+def test_a_short_solve_leaves_a_snapshot_where_no_result_follows(ports: Store) -> None:
+    record = claimed(ports)
+    reporter = Reporter(ports, record)
+    reporter.snapshot(solution("snapshot", SolutionStatus.CANCELLED))
+    reporter.exchange()
+    assert stored(ports, record) is None
+    reporter.finish(with_snapshot=False)
+    assert stored(ports, record) is None
+    reporter.snapshot(solution("snapshot", SolutionStatus.CANCELLED))
+    reporter.finish(with_snapshot=True)
+    assert stored(ports, record) == "snapshot"
+
+
+def test_a_cancel_brings_the_snapshot_at_once(ports: Store) -> None:
+    """The kill may come next."""
+    record = claimed(ports)
+    reporter = Reporter(ports, record)
+    reporter.snapshot(solution("snapshot", SolutionStatus.CANCELLED))
+    ports.jobs.move(record.id, JobStatus.CANCELLING, expect=frozenset({JobStatus.RUNNING}))
+    reporter.exchange()
+    assert stored(ports, record) == "snapshot"
+
+
+def test_a_fault_in_telling_does_not_end_the_solve(
+    ports: Store, caplog: pytest.LogCaptureFixture
 ) -> None:
-    monkeypatch.setattr("worker.reporting._AWAY", 0.0)
-    monkeypatch.setattr("worker.reporting.EVERY", 0.0)
+    class Broken:
+        def append(self, *_: object) -> str:
+            raise MemoryError
+
+    reporter = Reporter(replace(ports, events=cast(Any, Broken())), claimed(ports))
+    with reporter.talking():
+        reporter(mesh(0))
+        wait_until(lambda: "could not be told" in caplog.text)
+
+
+def test_a_cancel_is_seen_and_an_outage_is_none(
+    ports: Store, flaky: tuple[Store, dict[str, bool]]
+) -> None:
     record = claimed(ports)
     away, state = flaky
-    stop = StopFlag(away, record, Reporter(away, record))
-    assert not stop()
+    reporter = Reporter(away, record)
+    reporter.exchange()
     state["away"] = True
-    assert not stop()
+    reporter.exchange()
+    assert not reporter.stop
     state["away"] = False
     ports.jobs.move(record.id, JobStatus.CANCELLING, expect=frozenset({JobStatus.RUNNING}))
-    assert stop()
-    assert stop()
+    reporter.exchange()
+    assert reporter.stop
+
+
+@pytest.mark.parametrize("fate", ["handed on", "forgotten", "orphaned"])
+def test_an_attempt_that_is_not_wanted_stops(
+    ports: Store, fate: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    record = claimed(ports)
+    reporter = Reporter(ports, record)
+    running = frozenset({JobStatus.RUNNING})
+    if fate == "orphaned":
+        monkeypatch.setattr("os.getppid", lambda: 1)
+    elif fate == "handed on":
+        ports.jobs.move(record.id, JobStatus.QUEUED, expect=running)
+    else:
+        ports.jobs.move(record.id, JobStatus.FAILED, expect=running)
+        ports.jobs.delete(record.id, record.owner)
+    reporter.exchange()
+    assert reporter.stop
 
 
 def test_timings_add_up_by_stage(ports: Store) -> None:
