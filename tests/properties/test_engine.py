@@ -68,13 +68,16 @@ def test_every_admitted_problem_ends_in_words(document: dict[str, Any]) -> None:
     try:
         solution = solve(problem)
     except InvalidModel as error:
-        refusal = error
+        issues = error.issues
     else:
-        refusal = None
-    if refusal is not None:
-        assert all(issue.pointer and issue.message and issue.hint for issue in refusal.issues)
+        assert solution.message
+        assert_is_plain_json(solution)
         return
-    assert solution.message
+    assert issues
+    assert all(issue.pointer and issue.message and issue.hint for issue in issues)
+
+
+def assert_is_plain_json(solution: Solution) -> None:
     text = solution.model_dump_json()
     json.loads(text, parse_constant=lambda word: (_ for _ in ()).throw(AssertionError(word)))
     assert Solution.model_validate_json(text).status is solution.status
