@@ -5,6 +5,7 @@ import math
 import os
 import signal
 import time
+from types import FrameType
 from typing import TYPE_CHECKING, Any
 
 from redis import Redis
@@ -26,6 +27,9 @@ if TYPE_CHECKING:
     from redis.client import Pipeline
 
 logger = logging.getLogger("footfall.worker")
+
+
+_TOLD_TO_END = Loss(how="its worker was told to end", blameless=True)
 
 
 class FineAlarm(UnixSignalDeathPenalty):
@@ -67,6 +71,7 @@ class FootfallWorker(Worker):
         self._sweep = Sweep(store, settings)
         self._on_job = ""
         self._signal = 0
+        self._leaving = False
         self._cancel_seen: float | None = None
         super().__init__(
             [open_queue(client)],
@@ -132,9 +137,20 @@ class FootfallWorker(Worker):
         self._on_job, self._signal, self._cancel_seen = job.id, 0, None
         self._presence.tell(job.id)
         super().execute_job(job, queue)
-        how = f"its process was killed by signal {self._signal}" if self._signal else ""
-        self._settle(Loss(how=how or "its process ended early", killed=True))
+        self._settle(_TOLD_TO_END if self._leaving else self._loss())
         self._on_job = ""
+
+    def _loss(self) -> Loss:
+        how = f"its process was killed by signal {self._signal}" if self._signal else ""
+        return Loss(how=how or "its process ended early", killed=True)
+
+    def request_force_stop(self, signum: int, frame: FrameType | None) -> None:
+        """A second signal: the job is handed back without blame.
+
+        The death of its process may be seen before the exit that RQ raises here.
+        """
+        self._leaving = True
+        super().request_force_stop(signum, frame)
 
     def handle_work_horse_killed(self, job: Job, retpid: int, ret_val: int, rusage: Any) -> None:
         """Remember the signal; RQ calls this for a process that ended by itself."""
@@ -155,7 +171,7 @@ class FootfallWorker(Worker):
             if not self._server_answers():
                 logger.warning("the queue server is away; another worker will settle what is left")
                 return
-            self._settle(Loss(how="its worker was told to end", blameless=True))
+            self._settle(_TOLD_TO_END)
             self._store.queue.retire(self.name)
         super().teardown()  # type: ignore[no-untyped-call]
 
