@@ -116,7 +116,11 @@ def test_the_real_engine_stops_with_its_best_iterate(
     queue_store: Store, start_worker: Start
 ) -> None:
     start_worker()
-    long = {**examples.load("cart_pole"), "method": {"kind": "hermite_simpson", "segments": 1500}}
+    long = {
+        **examples.load("cart_pole"),
+        "method": {"kind": "hermite_simpson", "segments": 5000},
+        "refinement": {"tolerance": 1e-12, "max_segments": 20_000},  # no mesh is fine enough
+    }
     job_id = submit(queue_store, **long)
     wait_until(lambda: _iterations(queue_store, job_id) > 0, 14, "the solve iterates")
     assert cancel(queue_store, job_id) < 2.0
