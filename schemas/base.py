@@ -20,6 +20,14 @@ class Posted(Strict):
 Identifier = Annotated[str, StringConstraints(pattern=r"^[A-Za-z_][A-Za-z0-9_]{0,63}$")]
 """The name of a state, a control, a parameter, a phase: a letter, then letters, digits, _."""
 
+Series = Annotated[
+    str,
+    StringConstraints(
+        pattern=r"^(?:d{1,4}\([A-Za-z_][A-Za-z0-9_]{0,63}\)|[A-Za-z_][A-Za-z0-9_]{0,63})$"
+    ),
+]
+"""What varies along a phase: a state, a control, or a derivative of one such as ``d(x)``."""
+
 Label = Annotated[
     str, StringConstraints(min_length=1, max_length=200, pattern=r"^[^\x00-\x1f\x7f]*$")
 ]

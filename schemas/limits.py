@@ -7,7 +7,10 @@ from dataclasses import dataclass
 class ModelLimits:
     """What one problem may hold."""
 
-    phases: int = 1
+    phases: int = 50
+    static: int = 100
+    stages: int = 20
+    multistart: int = 200
     states: int = 200
     controls: int = 200
     parameters: int = 1000

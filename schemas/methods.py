@@ -60,8 +60,15 @@ class MultipleShooting(Posted):
     steps: int = Field(default=2, ge=1, le=50, description="Runge-Kutta steps of a segment.")
 
 
+class DirCol5i(Posted):
+    """Quintic Hermite splines for second-order systems, order 6: minimum jerk and snap."""
+
+    kind: Literal["dircol5i"]
+    segments: Segments = 12
+
+
 Method = Annotated[
-    Trapezoidal | HermiteSimpson | Radau | ChebyshevLobatto | MultipleShooting,
+    Trapezoidal | HermiteSimpson | Radau | ChebyshevLobatto | MultipleShooting | DirCol5i,
     Field(discriminator="kind"),
 ]
 METHODS: tuple[type[Posted], ...] = (
@@ -70,4 +77,5 @@ METHODS: tuple[type[Posted], ...] = (
     Radau,
     ChebyshevLobatto,
     MultipleShooting,
+    DirCol5i,
 )

@@ -59,7 +59,11 @@ class CurveGroup(Strict):
 
 
 class PhaseResult(Strict):
-    """One phase: its knots, node values by group, and continuous curves by group."""
+    """One phase: its knots, node values by group, and continuous curves by group.
+
+    Groups: ``states``, ``controls``; ``rates``, where derivatives of controls are series of their
+    own; ``costates``, of the continuous problem, at the times at which the method knows them.
+    """
 
     name: str
     knots: list[float]
@@ -79,6 +83,8 @@ class MeshIteration(Strict):
     nlp_iterations: int
     seconds: float
     status: str
+    degrees: list[int] = Field(default_factory=list)
+    switches: list[float] = Field(default_factory=list)
 
 
 class MeshRefinement(Strict):
@@ -128,15 +134,39 @@ class SolverReport(Strict):
     """What the NLP solver did on the mesh that is published.
 
     ``residuals`` are ranked, the worst first; ``seconds`` were spent inside of the NLP solver.
+    ``strategy`` is the one that gave the result, ``attempts`` says how those before it ended.
     """
 
     backend: str
     iterations: int
     status: str
     residuals: list[Residual]
+    strategy: str = "default"
+    attempts: list[str] = Field(default_factory=list)
     seconds: float = 0.0
     variables: int
     constraints: int
+
+
+class StageReport(Strict):
+    """One stage of several that were solved in a row, each from the one before."""
+
+    status: SolutionStatus
+    objective: float | None
+    nlp_iterations: int
+    segments: int
+    seconds: float
+
+
+class Minimum(Strict):
+    """One of the distinct minima that several guesses led to. ``seeds`` found it."""
+
+    objective: float | None
+    status: SolutionStatus
+    verdict: Literal["certified", "not_certified", "not_checked"]
+    seeds: list[int]
+    static: dict[str, float | None] = Field(default_factory=dict)
+    phases: list[PhaseResult]
 
 
 class Timing(Strict):
@@ -167,7 +197,10 @@ class Solution(Strict):
     message: str
     advice: list[str] = Field(default_factory=list)
     warnings: list[str] = Field(default_factory=list)
+    static: dict[str, float | None] = Field(default_factory=dict)
     phases: list[PhaseResult]
+    stages: list[StageReport] = Field(default_factory=list)
+    minima: list[Minimum] = Field(default_factory=list)
     mode_sequence: None = None
     mesh_refinement: MeshRefinement
     certificate: Certificate

@@ -9,7 +9,8 @@ from schemas.checks.places import variables
 from schemas.errors import Issue
 from schemas.expressions.tokens import MAX_CONSTANT
 from schemas.pointers import Part, pointer
-from schemas.problem import ConstantGuess, PointsGuess, Problem
+from schemas.guesses import ConstantGuess, PointsGuess
+from schemas.problem import Problem
 from schemas.values import Scalar
 
 

@@ -15,7 +15,7 @@ def check(problem: Problem) -> Iterator[Issue]:
         place = ("phases", index, "time")
         constants = Constants.of(phase, ("phases", index))
         constants.issues.clear()  # the parameters' issues are reported by the check of limits
-        initial = constants.interval(phase.time.initial, (*place, "initial"))
+        initial = constants.interval(phase.time.start, (*place, "initial"))
         final = constants.interval(phase.time.final, (*place, "final"))
         yield from constants.drain()
         if initial is None or final is None:

@@ -27,7 +27,7 @@ def time(case: Case) -> Check | None:
     findings = [
         finding
         for phase in case.phases
-        for side, bound in (("initial", phase.spec.time.initial), ("final", phase.spec.time.final))
+        for side, bound in (("initial", phase.spec.time.start), ("final", phase.spec.time.final))
         for finding in _off(phase, side, {"t": bound})
     ]
     return judge("time", findings, case.constraint_tolerance)

@@ -38,7 +38,7 @@ def _phase(spec: PhaseSpec) -> Phase:
         bounds=bounds,
         initial=ends(spec.initial),
         final=ends(spec.final),
-        start=_interval(spec.time.initial, constants),
+        start=_interval(spec.time.start, constants),
         end=_interval(spec.time.final, constants),
     )
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas import resolve
-from schemas.problem import ConstantGuess, Guess, PointsGuess
+from schemas.guesses import ConstantGuess, Guess, PointsGuess
 from solver.model import Interval, Phase
 from solver.trajectory.trajectory import Trajectory, straight_lines
 

@@ -1,0 +1,76 @@
+"""Guesses: from where a solve starts; one model a kind."""
+
+from typing import Annotated, Literal
+
+from pydantic import FailFast, Field
+
+from schemas.base import Identifier, Posted, Series
+from schemas.results import CurveGroup
+from schemas.values import Scalar
+
+Duration = Annotated[float, Field(gt=0, le=1e9, description="The guessed length in seconds.")]
+
+
+class LinearGuess(Posted):
+    """Straight lines between the initial and the final values; open ends take the other end."""
+
+    kind: Literal["linear"] = "linear"
+    duration: Duration | None = None
+
+
+class ConstantGuess(Posted):
+    """The same value all along; names left out take the linear guess."""
+
+    kind: Literal["constant"]
+    duration: Duration | None = None
+    values: dict[Series, Scalar]
+
+
+class PointsGuess(Posted):
+    """Values at given times, straight lines between; names left out take the linear guess.
+
+    ``time`` increases; it is stretched onto the guessed span of the phase, of which ``duration``
+    is the length where that is given.
+    """
+
+    kind: Literal["points"]
+    duration: Duration | None = None
+    time: Annotated[list[float], FailFast()] = Field(min_length=2, max_length=10_000)
+    values: dict[Series, Annotated[list[Scalar], FailFast()]]
+
+
+class RandomGuess(Posted):
+    """The linear guess plus smooth noise within the bounds, the same for the same seed.
+
+    ``spread`` is the noise's size relative to the width of the bounds, or to the typical size
+    where a side is open.
+    """
+
+    kind: Literal["random"]
+    duration: Duration | None = None
+    seed: int = Field(default=0, ge=0, le=2**31)
+    spread: float = Field(default=0.25, gt=0, le=10)
+
+
+class SolutionPhase(Posted):
+    """A phase of an earlier result: its name and its curves, as a result has them."""
+
+    name: Identifier
+    curves: dict[str, CurveGroup]
+
+
+class SolutionGuess(Posted):
+    """An earlier result, from any method and mesh; what it leaves out takes the linear guess.
+
+    Phases are matched by name; the only phase of each takes the other's.
+    """
+
+    kind: Literal["solution"]
+    phases: list[SolutionPhase] = Field(min_length=1, max_length=64)
+    static: dict[Identifier, float] = Field(default_factory=dict)
+
+
+Guess = Annotated[
+    LinearGuess | ConstantGuess | PointsGuess | RandomGuess | SolutionGuess,
+    Field(discriminator="kind"),
+]

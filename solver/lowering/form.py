@@ -1,0 +1,64 @@
+"""The form that every system is lowered to."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from schemas.expressions import Tree
+
+
+@dataclass(frozen=True, slots=True)
+class Unknowns:
+    """Names that vary along a phase and are found from as many residuals, which are zero.
+
+    ``residuals`` may use states, controls, definitions that need no later unknowns, and the
+    ``names`` themselves. ``labels`` say what to call each row.
+    """
+
+    names: tuple[str, ...]
+    residuals: tuple[Tree, ...]
+    labels: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Form:
+    """A phase's motion, all trees over names of this form, ``t`` and the problem's statics.
+
+    Attributes
+    ----------
+    constants
+        The system's parameters as numbers.
+    states, controls
+        Names; velocities are ``d(q)``. A control whose derivatives are used is a state, followed
+        by its derivatives but the highest, which is the control.
+    unknowns
+        Groups of algebraic names, each to be solved for after those before it: accelerations of
+        implicit systems and their derivatives.
+    definitions
+        Intermediates in an order in which each needs only those before it (or unknowns): the
+        user's own, and derivatives such as ``d(x)`` that are no states.
+    derivatives
+        The time derivative of every state but those of a closed form.
+    flow
+        Of a closed form: each state over ``initial.NAME``, ``initial.t`` and ``t``; else empty.
+    natives, residuals
+        Of a native form only: names that the method itself supplies along the phase, and what
+        it has to make zero, label -> tree.
+    publish
+        Group of a result -> the series that users see in it.
+    """
+
+    constants: Mapping[str, float]
+    states: tuple[str, ...]
+    controls: tuple[str, ...]
+    definitions: Mapping[str, Tree]
+    derivatives: Mapping[str, Tree]
+    unknowns: tuple[Unknowns, ...] = ()
+    flow: Mapping[str, Tree] = field(default_factory=dict)
+    natives: tuple[str, ...] = ()
+    residuals: Mapping[str, Tree] = field(default_factory=dict)
+    publish: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+    @property
+    def algebraic(self) -> tuple[str, ...]:
+        """All unknowns, in the order in which they are solved for."""
+        return tuple(name for group in self.unknowns for name in group.names)
