@@ -73,11 +73,13 @@ def _broken(problem: Problem, model: Model, index: int, guess: Trajectory) -> It
     spec, phase = problem.phases[index], model.phases[index]
     fractions = np.linspace(0.0, 1.0, _SAMPLES)
     times = guess.start + (guess.end - guess.start) * fractions
-    x = _within(phase, phase.states, guess.sample_states(fractions))
-    u = _within(phase, phase.controls, guess.sample_controls(fractions))
+    x = _within(phase, phase.states, guess.sample(phase.states, fractions))
+    u = _within(phase, phase.controls, guess.sample(phase.controls, fractions))
     named = list(_expressions(spec))
     with np.errstate(all="ignore"):
-        values = along(spec.system, [expression.tree for _, expression in named])(times, x, u)
+        trees = [expression.tree for _, expression in named]
+        statics = {static.name: static.guess for static in model.statics}
+        values = along(phase.form, trees, statics)(times, x, u)
     for (place, _), row in zip(named, values, strict=True):
         bad = np.flatnonzero(~np.isfinite(row))
         if len(bad):

@@ -3,20 +3,18 @@
 import math
 import time
 from collections.abc import Callable
+from dataclasses import replace
 
 from schemas.events import EngineEvent, MeshSolved
 from schemas.problem import Problem
 from schemas.results import Solution, finite
 from solver.certificate import CHECKS, JUDGED, certify
-from solver.mesh import Mesh
-from solver.model import build_model
+from solver.prepare import prepare
 from solver.refinement.subdivide import refine
 from solver.run import Run
 from solver.solution.choose import choose
 from solver.solution.conclude import conclude, snapshot
 from solver.solve_mesh import SolvedMesh, Start, solve_mesh
-from solver.trajectory import initial_guess
-from solver.transcriptions import make_transcription
 
 
 def _ignore(_: object) -> None:
@@ -65,38 +63,40 @@ def solve(
     limit = time.monotonic() + problem.limits.seconds
     run = Run(on_event, min(limit, math.inf if deadline is None else deadline), should_stop)
     with run.stage("build"):
-        model, transcription = build_model(problem), make_transcription(problem.method)
-        meshes = [Mesh.uniform(problem.method.segments) for _ in model.phases]
-        guesses = [initial_guess(phase, problem.guess) for phase in model.phases]
+        model, setting = prepare(problem)
 
     solved: list[SolvedMesh] = []
 
     def publish(*unfinished: SolvedMesh) -> None:
         on_snapshot(snapshot(problem, [*solved, *unfinished], run))
 
-    start: Start | None = Start(0, meshes, guesses)
+    start: Start | None = Start(0, setting, warm=False)
     while start is not None:
-        solved.append(solve_mesh(problem, model, transcription, start, run, publish))
+        solved.append(solve_mesh(problem, model, start, run, publish))
         on_event(_mesh_event(problem, solved))
         publish()
-        start = _next(problem, transcription.error_order, start, solved[-1])
+        start = _next(problem, start, solved[-1])
 
     with run.stage("certify"):
         chosen = choose(solved)
         checks = JUDGED if run.stopped() else CHECKS
-        certificate = certify(problem, chosen.phases, finite(chosen.objective), checks)
+        certificate = certify(problem, chosen.phases, finite(chosen.objective), checks, chosen.statics)
     return conclude(problem, solved, certificate, run)
 
 
-def _next(problem: Problem, order: int, start: Start, last: SolvedMesh) -> Start | None:
+def _next(problem: Problem, start: Start, last: SolvedMesh) -> Start | None:
     """The next mesh, or None where this one is the last."""
     settings = problem.refinement
     if settings is None or not last.optimal or last.max_error <= settings.tolerance:
         return None
     if start.number + 1 >= settings.max_iterations:
         return None
-    meshes = refine(start.meshes, last.errors, order, settings)
-    return None if meshes is None else Start(start.number + 1, meshes, last.trajectories)
+    meshes = refine(start.setting.meshes, last.errors, start.setting.transcriptions[0].error_order, settings)
+    if meshes is None:
+        return None
+    values = list(last.statics.values())
+    setting = replace(start.setting, meshes=meshes, guesses=last.trajectories, statics=values)
+    return Start(start.number + 1, setting, warm=True)
 
 
 def _mesh_event(problem: Problem, solved: list[SolvedMesh]) -> MeshSolved:

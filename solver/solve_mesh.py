@@ -1,7 +1,7 @@
 """One mesh: transcribe, assemble, solve, read out, estimate the error."""
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,12 +9,11 @@ from numpy.typing import NDArray
 
 from schemas.errors import InvalidModel, Issue
 from schemas.events import StageStarted
-from schemas.phases import Phase
 from schemas.problem import Problem
 from schemas.results import PhaseResult
 from solver.backends import NlpStatus, Outcome, Watch, make_backend
 from solver.diagnosis import check_start
-from solver.mesh import Mesh
+from solver.lowering import lower
 from solver.model import Model
 from solver.nlp.redundancy import Redundancy, find_redundancy
 from solver.nlp.residuals import RowResidual, ranked_residuals
@@ -23,28 +22,29 @@ from solver.nlp.task import NlpTask
 from solver.refinement.error import segment_errors
 from solver.run import Run
 from solver.trajectory import Trajectory
-from solver.transcribe import Transcribed, extract, transcribe
-from solver.transcriptions import Transcription
+from solver.transcribe import Setting, Transcribed, extract, transcribe, with_costates
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
 class Start:
-    """From where a mesh is solved. ``number`` counts meshes from 0; later ones start warm."""
+    """From where a mesh is solved. ``number`` counts meshes from 0; ``warm``: nearly optimal."""
 
     number: int
-    meshes: Sequence[Mesh]
-    guesses: Sequence[Trajectory]
+    setting: Setting
+    warm: bool
 
 
 @dataclass(frozen=True, slots=True)
 class SolvedMesh:
     """What solving one mesh gave. ``errors`` (segments,) per phase."""
 
+    setting: Setting
     outcome: Outcome
     trajectories: list[Trajectory]
     phases: list[PhaseResult]
+    statics: dict[str, float]
     errors: list[Array]
     residuals: list[RowResidual]
     redundancy: Redundancy
@@ -73,7 +73,8 @@ class _Built:
     """A mesh ready to be solved."""
 
     problem: Problem
-    transcription: Transcription
+    model: Model
+    setting: Setting
     transcribed: Transcribed
     scaling: Scaling
     task: NlpTask
@@ -84,13 +85,18 @@ class _Built:
         """The trajectories at a point of the NLP, their errors, and what is violated there."""
         program, scaling = self.transcribed.program, self.scaling
         w, rows = outcome.point.z * scaling.columns, outcome.point.rows * scaling.rows
-        trajectories, phases = extract(self.transcribed, self.transcription, w)
-        specs = self.problem.phases
+        trajectories, phases = extract(self.transcribed, w)
+        if outcome.row_multipliers is not None and outcome.status is NlpStatus.OPTIMAL:
+            phases = with_costates(self.transcribed, outcome.row_multipliers / scaling.rows, phases)
+        names = [static.name for static in self.model.statics]
+        values = [float(w[place]) for place in self.transcribed.statics]
         return SolvedMesh(
+            setting=self.setting,
             outcome=outcome,
             trajectories=trajectories,
             phases=phases,
-            errors=[self._errors(*pair) for pair in zip(specs, phases, strict=True)],
+            statics=dict(zip(names, values, strict=True)),
+            errors=self._errors(phases, dict(zip(names, values, strict=True))),
             residuals=ranked_residuals(program, scaling, w, rows),
             redundancy=self.redundancy,
             variables=program.variables.size,
@@ -98,16 +104,18 @@ class _Built:
             seconds=time.monotonic() - self.began,
         )
 
-    def _errors(self, spec: Phase, result: PhaseResult) -> Array:
+    def _errors(self, phases: list[PhaseResult], statics: dict[str, float]) -> list[Array]:
         """The error of each segment: the largest of its pieces."""
-        errors = segment_errors(spec, result).reshape(-1, self.transcription.pieces)
-        return np.asarray(errors.max(axis=1))
+        parts = zip(lower(self.problem), phases, self.setting.transcriptions, strict=True)
+        return [
+            segment_errors(form, result, statics).reshape(-1, method.pieces).max(axis=1)
+            for form, result, method in parts
+        ]
 
 
 def solve_mesh(
     problem: Problem,
     model: Model,
-    transcription: Transcription,
     start: Start,
     run: Run,
     publish: Callable[[SolvedMesh], None],
@@ -120,7 +128,7 @@ def solve_mesh(
         If the model has no finite value at the first guess, or the backend refuses it.
     """
     with run.stage("build"):
-        built = _build(problem, model, transcription, start)
+        built = _build(problem, model, start)
     pace = run.pace()
 
     def keep(watch: Watch) -> None:
@@ -133,7 +141,7 @@ def solve_mesh(
         outcome = _solve(
             problem,
             built.task,
-            start.number,
+            start.warm,
             lambda: run.watch(start.number, keep),
             lambda note: run.on_event(StageStarted(stage="solve", note=note)),
         )
@@ -141,22 +149,23 @@ def solve_mesh(
         return built.read(outcome)
 
 
-def _build(problem: Problem, model: Model, transcription: Transcription, start: Start) -> _Built:
+def _build(problem: Problem, model: Model, start: Start) -> _Built:
     began = time.monotonic()
-    transcribed = transcribe(model, transcription, start.meshes, start.guesses)
+    setting = start.setting
+    transcribed = transcribe(model, setting)
     scaling = typical_scaling(transcribed.program)
     task = NlpTask.of(transcribed.program, scaling)
     if start.number == 0:
-        check_start(problem, model, transcribed.program, task, start.guesses)
+        check_start(problem, model, transcribed.program, task, setting.guesses)
     redundancy = find_redundancy(transcribed.program, scaling, task.nlp)
     reduced = task.without(redundancy)
-    return _Built(problem, transcription, transcribed, scaling, reduced, redundancy, began)
+    return _Built(problem, model, setting, transcribed, scaling, reduced, redundancy, began)
 
 
 def _solve(
     problem: Problem,
     task: NlpTask,
-    mesh: int,
+    warm: bool,
     watch: Callable[[], Watch],
     announce: Callable[[str], None],
 ) -> Outcome:
@@ -164,7 +173,7 @@ def _solve(
     backend, settings = make_backend(problem.solver.backend), problem.solver
     if refusal := backend.refusal(task):
         raise InvalidModel([Issue("/solver/backend", refusal)])
-    if mesh == 0:
+    if not warm:
         return backend.solve(task, settings, watch(), warm=False)
     outcome = backend.solve(task, settings, watch(), warm=True)
     if outcome.status in (NlpStatus.OPTIMAL, NlpStatus.STOPPED, NlpStatus.TIME_LIMIT):

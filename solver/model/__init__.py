@@ -1,6 +1,6 @@
 """The model: frozen dataclasses built from the problem in one place."""
 
 from solver.model.build import build_model
-from solver.model.model import Constraint, Interval, Model, Phase
+from solver.model.model import OPEN, Constraint, Interval, Model, Phase, Static
 
-__all__ = ["Constraint", "Interval", "Model", "Phase", "build_model"]
+__all__ = ["OPEN", "Constraint", "Interval", "Model", "Phase", "Static", "build_model"]

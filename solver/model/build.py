@@ -1,46 +1,115 @@
-"""Problem -> Model: constants evaluated, bounds intersected, names gone from pydantic."""
+"""Problem -> Model: systems lowered, constants evaluated, bounds intersected."""
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 
 from schemas import resolve
+from schemas.expressions import Name, Tree
 from schemas.phases import Constraint as ConstraintSpec
 from schemas.phases import Phase as PhaseSpec
-from schemas.problem import Problem
+from schemas.problem import Problem, Static as StaticSpec
 from schemas.values import Bound
-from solver.model.model import Constraint, Interval, Model, Phase
+from solver.lowering import Form, lower, lower_native
+from solver.model.model import OPEN, Constraint, Interval, Model, Phase, Static
 
 
-def build_model(problem: Problem) -> Model:
-    """The model of a checked problem (``schemas.reading.read_problem``)."""
+def build_model(problem: Problem, native: Sequence[bool] | None = None) -> Model:
+    """The model of a checked problem (``schemas.reading.read_problem``).
+
+    ``native`` tells for each phase whether its method differentiates its own curves.
+    """
+    forms = lower(problem)
+    native = native or [False] * len(forms)
+    softened = problem.nonsmooth is not None and problem.nonsmooth.abs == "slack"
+    phases = []
+    for index, (spec, chain) in enumerate(zip(problem.phases, forms, strict=True)):
+        form = lower_native(problem, index) if native[index] else chain
+        extra = _slacks(problem, index) if softened else None
+        phases.append(_phase(spec, form, chain, extra, first=index == 0))
     objective = problem.objective.minimize.tree if problem.objective else None
-    return Model(tuple(_phase(phase) for phase in problem.phases), objective)
+    statics = tuple(_static(name, spec) for name, spec in problem.static.items())
+    linkages = tuple(_constraint("linkage", row, {}) for row in problem.linkages)
+    return Model(tuple(phases), objective, statics, linkages)
 
 
-def _phase(spec: PhaseSpec) -> Phase:
-    system = spec.system
-    constants = resolve.parameters(system)
-    names = [*system.states, *system.controls]
-    bounds = {name: _interval(spec.bounds.get(name), constants) for name in names}
+def _slacks(problem: Problem, index: int) -> "Slacks":
+    from solver.lowering import slacks
+    return slacks(problem, index)
+
+
+def _phase(
+    spec: PhaseSpec, form: Form, chain: Form, extra: "Slacks | None", *, first: bool
+) -> Phase:
+    constants = form.constants
+    variables = [*form.states, *form.controls]
+    bounds = {name: _interval(spec.bounds.get(name), constants) for name in variables}
 
     def ends(given: Mapping[str, Bound]) -> dict[str, Interval]:
-        return {name: _meet(bounds[name], _interval(given.get(name), constants)) for name in names}
+        return {name: _meet(bounds[name], _interval(given.get(name), constants)) for name in bounds}
 
+    path = [_constraint("path", row, constants) for row in spec.path]
+    path += _limits("bound", spec.bounds, bounds, constants)
+    path += _rows_of(form, extra)
+    boundary = [_constraint("boundary", row, constants) for row in spec.boundary]
+    for side, given in (("initial", spec.initial), ("final", spec.final)):
+        boundary += _limits(side, given, bounds, constants, prefix=f"{side}.")
+    names = extra.names if extra else ()
     return Phase(
         name=spec.name,
-        states=tuple(system.states),
-        controls=tuple(system.controls),
-        parameters=constants,
-        definitions={name: expression.tree for name, expression in system.define.items()},
-        derivatives=tuple(system.derivatives[name].tree for name in system.states),
-        integrals={name: expression.tree for name, expression in spec.integrals.items()},
-        path=tuple(_constraint(constraint, constants) for constraint in spec.path),
-        boundary=tuple(_constraint(constraint, constants) for constraint in spec.boundary),
+        form=form,
+        algebraic=(*form.algebraic, *names),
+        natives=form.natives or _initials(form),
+        integrals=extra.integrals if extra else _trees(spec),
+        path=tuple(path),
+        boundary=tuple(boundary),
         bounds=bounds,
         initial=ends(spec.initial),
         final=ends(spec.final),
-        start=_interval(spec.time.start, constants),
+        start=_interval(spec.time.start, constants) if first else None,
         end=_interval(spec.time.final, constants),
+        duration=_interval(spec.time.duration, constants),
+        publish=chain.publish,
     )
+
+
+def _trees(spec: PhaseSpec) -> dict[str, Tree]:
+    return {name: expression.tree for name, expression in spec.integrals.items()}
+
+
+def _initials(form: Form) -> tuple[str, ...]:
+    """What a closed form's formulas know of their phase's start."""
+    if not form.flow:
+        return ()
+    return (*(f"initial.{name}" for name in form.states), "initial.t")
+
+
+def _rows_of(form: Form, extra: "Slacks | None") -> list[Constraint]:
+    """What the form itself asks for at every node."""
+    zero, above = Interval(0.0, 0.0), Interval(0.0, math.inf)
+    rows = [
+        Constraint(label, tree, zero)
+        for group in form.unknowns
+        for label, tree in zip(group.labels, group.residuals, strict=True)
+    ]
+    rows += [Constraint(label, tree, zero) for label, tree in form.residuals.items()]
+    if extra is not None:
+        rows += [Constraint(label, tree, above) for label, tree in extra.rows.items()]
+    return rows
+
+
+def _limits(
+    label: str,
+    given: Mapping[str, Bound],
+    variables: Mapping[str, Interval],
+    constants: Mapping[str, float],
+    prefix: str = "",
+) -> list[Constraint]:
+    """Limits on what is no variable of the form, such as an acceleration, as constraints."""
+    return [
+        Constraint(f"{label} {name}", Name(prefix + name), _interval(bound, constants))
+        for name, bound in given.items()
+        if name not in variables
+    ]
 
 
 def _interval(limited: Bound | ConstraintSpec | None, constants: Mapping[str, float]) -> Interval:
@@ -51,5 +120,15 @@ def _meet(a: Interval, b: Interval) -> Interval:
     return Interval(max(a.lower, b.lower), min(a.upper, b.upper))
 
 
-def _constraint(spec: ConstraintSpec, constants: Mapping[str, float]) -> Constraint:
-    return Constraint(spec.name, spec.expression.tree, _interval(spec, constants))
+def _constraint(kind: str, spec: ConstraintSpec, constants: Mapping[str, float]) -> Constraint:
+    return Constraint(f"{kind} {spec.name}", spec.expression.tree, _interval(spec, constants))
+
+
+def _static(name: str, spec: StaticSpec) -> Static:
+    limits = _interval(spec.bounds, {})
+    if spec.guess is not None:
+        return Static(name, limits, resolve.scalar(spec.guess, {}))
+    if math.isinf(limits.lower) or math.isinf(limits.upper):
+        nearest = min(max(1.0 if limits == OPEN else 0.0, limits.lower), limits.upper)
+        return Static(name, limits, nearest)
+    return Static(name, limits, (limits.lower + limits.upper) / 2)

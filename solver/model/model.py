@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from schemas.expressions import Tree
+from solver.lowering import Form
 
 
 class Interval(NamedTuple):
@@ -18,44 +19,91 @@ class Interval(NamedTuple):
         """Whether the interval is one point."""
         return self.lower == self.upper
 
+    @property
+    def finite(self) -> bool:
+        """Whether a side of it limits anything."""
+        return self.lower > -float("inf") or self.upper < float("inf")
+
+
+OPEN = Interval(-float("inf"), float("inf"))
+
 
 @dataclass(frozen=True, slots=True)
 class Constraint:
-    """``lower <= tree <= upper``, along a phase or over its ends."""
+    """``lower <= tree <= upper``, along a phase or over ends. ``label`` is how reports call it."""
 
-    name: str
+    label: str
     tree: Tree
     limits: Interval
 
 
 @dataclass(frozen=True, slots=True)
-class Phase:
-    """One phase. ``bounds``, ``initial`` and ``final`` hold an interval for every variable."""
+class Static:
+    """A number that the solver chooses."""
 
     name: str
-    states: tuple[str, ...]
-    controls: tuple[str, ...]
-    parameters: Mapping[str, float]
-    definitions: Mapping[str, Tree]
-    derivatives: tuple[Tree, ...]
+    limits: Interval
+    guess: float
+
+
+@dataclass(frozen=True, slots=True)
+class Phase:
+    """One phase.
+
+    Attributes
+    ----------
+    form
+        The motion, as the phase's method takes it.
+    algebraic
+        Names found at each node on its own: unknown accelerations, slacks.
+    natives
+        Names that the method supplies along the phase without variables of their own.
+    path, boundary
+        Constraints along the phase and over its ends, those of the form included.
+    bounds, initial, final
+        An interval for every state and control of the form.
+    start
+        None where the phase starts when the one before it ends.
+    publish
+        Group of the result -> names of its series.
+    """
+
+    name: str
+    form: Form
+    algebraic: tuple[str, ...]
+    natives: tuple[str, ...]
     integrals: Mapping[str, Tree]
     path: tuple[Constraint, ...]
     boundary: tuple[Constraint, ...]
     bounds: Mapping[str, Interval]
     initial: Mapping[str, Interval]
     final: Mapping[str, Interval]
-    start: Interval
+    start: Interval | None
     end: Interval
+    duration: Interval
+    publish: Mapping[str, tuple[str, ...]]
 
     @property
-    def variables(self) -> tuple[str, ...]:
-        """States, then controls."""
-        return self.states + self.controls
+    def states(self) -> tuple[str, ...]:
+        """The form's states."""
+        return self.form.states
+
+    @property
+    def controls(self) -> tuple[str, ...]:
+        """The form's controls."""
+        return self.form.controls
+
+    @property
+    def parameters(self) -> Mapping[str, float]:
+        """The system's constants."""
+        return self.form.constants
 
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """The phases and what to minimize over them (None: any feasible motion)."""
+    """Phases, what links them, and what to minimize over them (None: any feasible motion)."""
 
     phases: tuple[Phase, ...]
     objective: Tree | None
+    statics: tuple[Static, ...] = ()
+    linkages: tuple[Constraint, ...] = ()

@@ -1,74 +1,176 @@
-"""The model's expressions as CasADi functions of a phase's states, controls and time."""
+"""The model's expressions as CasADi functions along a phase, and the names known at its ends."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import casadi as ca
 
+from schemas.expressions import Tree
 from solver.expressions import SX, evaluate
-from solver.model.model import Model, Phase
+from solver.lowering import Unknowns
+from solver.model.model import Constraint, Model, Phase
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A place in a phase in symbols.
+
+    State (n_x,), control (n_u,), algebraic (n_z,) and native values (n_n,), time, statics (n_p,).
+    """
+
+    x: SX
+    u: SX
+    z: SX
+    natives: SX
+    t: SX
+    p: SX
+
+    def arguments(self) -> list[SX]:
+        """What the functions of a phase take."""
+        return [self.x, self.u, self.z, self.natives, self.t, self.p]
 
 
 @dataclass(frozen=True, slots=True)
 class PhaseFunctions:
-    """Functions of (x, u, t): derivatives (n_x,), integrands (n_q,), path values (n_c,)."""
+    """Functions of a place: derivatives (n_x,), integrands (n_q,), path values (n_c,).
+
+    ``flow`` gives the states (n_x,) of a closed form from natives, time and statics.
+    ``native_rows`` are the positions of path constraints that use natives.
+    """
 
     derivatives: ca.Function
     integrands: ca.Function
     path: ca.Function
+    flow: ca.Function
+    native_rows: frozenset[int]
 
 
-def phase_functions(phase: Phase) -> PhaseFunctions:
+def phase_functions(phase: Phase, statics: Sequence[str], *, eliminate: bool) -> PhaseFunctions:
     """Build the functions of one phase; named intermediates are shared subexpressions."""
-    x, u, t = (SX.sym(name, size) for name, size in _sizes(phase))
-    scope = {name: SX(value) for name, value in phase.parameters.items()}
-    scope |= {name: x[i] for i, name in enumerate(phase.states)}
-    scope |= {name: u[i] for i, name in enumerate(phase.controls)}
-    scope["t"] = t
-    for name, tree in phase.definitions.items():
-        scope[name] = evaluate(tree, scope)
+    form = phase.form
+    place = Place(
+        *(
+            SX.sym(name, size)
+            for name, size in (
+                ("x", len(phase.states)),
+                ("u", len(phase.controls)),
+                ("z", 0 if eliminate else len(phase.algebraic)),
+                ("n", len(phase.natives)),
+                ("t", 1),
+                ("p", len(statics)),
+            )
+        )
+    )
+    scope = along_scope(phase, place, statics, eliminate=eliminate)
 
     def function(name: str, outputs: Sequence[SX]) -> ca.Function:
-        return ca.Function(name, [x, u, t], [ca.vertcat(SX(0, 1), *outputs)])
+        return ca.Function(name, place.arguments(), [ca.vertcat(SX(0, 1), *outputs)])
 
+    rates = [
+        evaluate(form.derivatives[name], scope) if name in form.derivatives else SX(0)
+        for name in phase.states
+    ]
+    rows = [evaluate(row.tree, scope) for row in path_rows(phase, eliminate=eliminate)]
+    flow = ca.vertcat(SX(0, 1), *(evaluate(tree, scope) for tree in form.flow.values()))
     return PhaseFunctions(
-        function("derivatives", [evaluate(tree, scope) for tree in phase.derivatives]),
+        function("derivatives", rates),
         function("integrands", [evaluate(tree, scope) for tree in phase.integrals.values()]),
-        function("path", [evaluate(row.tree, scope) for row in phase.path]),
+        function("path", rows),
+        ca.Function("flow", [place.natives, place.t, place.p], [flow]),
+        frozenset(i for i, row in enumerate(rows) if _uses(row, place.natives)),
     )
 
 
-def _sizes(phase: Phase) -> list[tuple[str, int]]:
-    return [("x", len(phase.states)), ("u", len(phase.controls)), ("t", 1)]
+def path_rows(phase: Phase, *, eliminate: bool) -> list[Constraint]:
+    """The constraints along the phase; those of unknowns fall away where these are eliminated."""
+    if not eliminate:
+        return list(phase.path)
+    labels = {label for group in phase.form.unknowns for label in group.labels}
+    return [row for row in phase.path if row.label not in labels]
+
+
+def _uses(row: SX, symbols: SX) -> bool:
+    return bool(symbols.numel()) and any(ca.which_depends(row, symbols, 1, False))
+
+
+def along_scope(
+    phase: Phase, place: Place, statics: Sequence[str], *, eliminate: bool = False
+) -> dict[str, SX]:
+    """Every name that an expression along the phase may use."""
+    scope = {name: SX(value) for name, value in phase.parameters.items()}
+    for names, values in (
+        (statics, place.p),
+        (phase.states, place.x),
+        (phase.controls, place.u),
+        (phase.natives, place.natives),
+        (() if eliminate else phase.algebraic, place.z),
+    ):
+        scope |= {name: values[i] for i, name in enumerate(names)}
+    scope["t"] = place.t
+    if eliminate:
+        for group in phase.form.unknowns:
+            scope |= _solved(phase, scope, group)
+    whole = _Definitions(phase, scope)
+    for name in phase.form.definitions:
+        whole[name]
+    return dict(whole)
+
+
+class _Definitions(dict[str, SX]):
+    """A scope that evaluates an intermediate when it is first asked for."""
+
+    def __init__(self, phase: Phase, known: Mapping[str, SX]) -> None:
+        super().__init__(known)
+        self._trees: Mapping[str, Tree] = phase.form.definitions
+
+    def __missing__(self, name: str) -> SX:
+        self[name] = evaluate(self._trees[name], self)
+        return self[name]
+
+
+def _solved(phase: Phase, known: Mapping[str, SX], group: Unknowns) -> dict[str, SX]:
+    """Unknowns eliminated from residuals that are linear in them, by a symbolic solve."""
+    unknown = SX.sym("unknown", len(group.names))
+    named = {name: unknown[i] for i, name in enumerate(group.names)}
+    scope = _Definitions(phase, {**known, **named})
+    rows = ca.vertcat(*(evaluate(tree, scope) for tree in group.residuals))
+    matrix = ca.jacobian(rows, unknown)
+    rest = ca.substitute(rows, unknown, SX.zeros(*unknown.shape))
+    solved = -ca.solve(matrix, rest)
+    return {name: solved[i] for i, name in enumerate(group.names)}
 
 
 @dataclass(frozen=True, slots=True)
 class Ends:
-    """Symbols at the two ends of a phase, and its integrals."""
+    """The two ends of a phase in symbols, and its integrals (n_q,)."""
 
-    x: tuple[SX, SX]
-    u: tuple[SX, SX]
-    t: tuple[SX, SX]
+    initial: Place
+    final: Place
     integrals: SX
 
 
-def boundary_scope(phase: Phase, ends: Ends) -> dict[str, SX]:
+def boundary_scope(
+    phase: Phase, ends: Ends, statics: Sequence[str], *, eliminate: bool
+) -> dict[str, SX]:
     """Names that boundary constraints of this phase may use."""
     scope = {name: SX(value) for name, value in phase.parameters.items()}
     scope |= {name: ends.integrals[i] for i, name in enumerate(phase.integrals)}
-    for side, label in enumerate(("initial", "final")):
-        scope |= {f"{label}.{name}": ends.x[side][i] for i, name in enumerate(phase.states)}
-        scope |= {f"{label}.{name}": ends.u[side][i] for i, name in enumerate(phase.controls)}
-        scope[f"{label}.t"] = ends.t[side]
-    scope["duration"] = ends.t[1] - ends.t[0]
+    for label, place in (("initial", ends.initial), ("final", ends.final)):
+        along = along_scope(phase, place, statics, eliminate=eliminate)
+        scope |= {f"{label}.{name}": value for name, value in along.items()}
+    scope |= {name: ends.initial.p[i] for i, name in enumerate(statics)}
+    scope["duration"] = ends.final.t - ends.initial.t
     return scope
 
 
-def objective_scope(model: Model, scopes: Sequence[Mapping[str, SX]]) -> dict[str, SX]:
-    """Names that the objective may use: every phase's under its prefix, the only one's bare."""
+def objective_scope(
+    model: Model, scopes: Sequence[Mapping[str, SX]], statics: SX
+) -> dict[str, SX]:
+    """Names of objective and linkages: every phase's under its prefix, the only one's bare."""
     scope = {
         f"{phase.name}.{name}": value
         for phase, names in zip(model.phases, scopes, strict=True)
         for name, value in names.items()
     }
+    scope |= {static.name: statics[i] for i, static in enumerate(model.statics)}
     return scope | dict(scopes[0]) if len(scopes) == 1 else scope

@@ -28,12 +28,13 @@ class RowLabel(NamedTuple):
 class Program:
     """A nonlinear program made of stage groups.
 
-    ``sum_names`` names the sums from 1 on (lifted integrals); sum 0 is the objective.
+    ``sum_names`` has name and phase of the sums from 1 on (lifted integrals); sum 0 is the
+    objective.
     """
 
     variables: Variables
     groups: tuple[StageGroup, ...]
-    sum_names: tuple[str, ...] = ()
+    sum_names: tuple[tuple[str, int], ...] = ()
 
     @property
     def own_rows(self) -> int:
@@ -56,5 +57,5 @@ class Program:
             for stage in range(group.stages):
                 for row, name in enumerate(group.rows.names):
                     yield RowLabel(name, group.phase, float(group.rows.fractions[row, stage]))
-        for name in self.sum_names:
-            yield RowLabel(f"integral {name}", None, float("nan"))
+        for name, phase in self.sum_names:
+            yield RowLabel(f"integral {name}", phase, float("nan"))

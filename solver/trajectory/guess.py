@@ -1,53 +1,116 @@
-"""The initial guess: straight lines, constants or points, within the bounds (003, 7.6.1)."""
+"""The initial guess: lines, constants, points, noise or an earlier result (003, 7.6.1)."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
+from footfall.curves import Curves
 from schemas import resolve
-from schemas.guesses import ConstantGuess, Guess, PointsGuess
-from solver.model import Interval, Phase
+from schemas.guesses import ConstantGuess, Guess, PointsGuess, RandomGuess, SolutionGuess
+from solver.model import Interval, Model, Phase
+from solver.trajectory.noise import noisy, noisy_values
 from solver.trajectory.trajectory import Trajectory, straight_lines
 
 Array = NDArray[np.float64]
 
 
-def initial_guess(phase: Phase, guess: Guess) -> Trajectory:
-    """The trajectory from which the first mesh starts.
+def initial_guesses(model: Model, guesses: Sequence[Guess]) -> list[Trajectory]:
+    """One trajectory for each phase, each starting when the one before it ends.
 
-    Names that the guess leaves out go straight from their initial to their final value; an open
+    Names that a guess leaves out go straight from their initial to their final value; an open
     end takes the other end's value, and two open ends the admissible value nearest to zero.
     """
-    start, end = _span(phase.start, phase.end)
+    trajectories: list[Trajectory] = []
+    for index, (phase, guess) in enumerate(zip(model.phases, guesses, strict=True)):
+        before = trajectories[-1].end if trajectories else None
+        trajectories.append(_guess(phase, guess, before, index))
+    return trajectories
+
+
+def guessed_statics(model: Model, guess: Guess) -> list[float]:
+    """The problem's statics: their own guesses, an earlier result's, or random ones."""
+    values = [static.guess for static in model.statics]
+    if isinstance(guess, SolutionGuess):
+        return [
+            guess.static.get(static.name, value)
+            for static, value in zip(model.statics, values, strict=True)
+        ]
+    if isinstance(guess, RandomGuess):
+        limits = [static.limits for static in model.statics]
+        return noisy_values(values, limits, guess.seed, guess.spread)
+    return values
+
+
+def _guess(phase: Phase, guess: Guess, before: float | None, index: int) -> Trajectory:
+    if isinstance(guess, SolutionGuess):
+        earlier = _earlier(guess, phase)
+        if earlier is not None:
+            return _moved(earlier, phase, before)
+    start, end = _span(phase, before, guess)
     times, given = _given(guess, phase.parameters)
     shares = (times - times[0]) / (times[-1] - times[0])
     times = start + (end - start) * shares
 
-    def curves(names: tuple[str, ...]) -> Array:
+    def curves(names: tuple[str, ...]) -> Curves:
         rows = [given.get(name, _line(phase, name, shares)) for name in names]
-        return np.array(rows).reshape(len(names), len(times))
+        return straight_lines(names, times, np.array(rows).reshape(len(names), len(times)))
 
-    return Trajectory(
-        start,
-        end,
-        straight_lines(phase.states, times, curves(phase.states)),
-        straight_lines(phase.controls, times, curves(phase.controls)),
-    )
+    trajectory = Trajectory(start, end, curves(phase.states), curves(phase.controls))
+    if isinstance(guess, RandomGuess):
+        return noisy(trajectory, phase, guess.seed + 7919 * index, guess.spread)
+    return trajectory
 
 
-def _span(start: Interval, end: Interval) -> tuple[float, float]:
+def _earlier(guess: SolutionGuess, phase: Phase) -> Trajectory | None:
+    """The earlier result's trajectory of this phase."""
+    found = [one for one in guess.phases if one.name == phase.name]
+    if not found and len(guess.phases) == 1:
+        found = list(guess.phases)
+    if not found:
+        return None
+    groups = {
+        name: Curves.from_dict(group.model_dump()) for name, group in found[0].curves.items()
+    }
+    states, controls = groups["states"], groups.get("controls")
+    start, end = float(states.breaks[0]), float(states.breaks[-1])
+    empty = Curves([start, end], {})
+    return Trajectory(start, end, states, controls or empty, groups.get("rates", empty))
+
+
+def _moved(trajectory: Trajectory, phase: Phase, before: float | None) -> Trajectory:
+    """The same motion, so that it starts where the phase can start."""
+    start = before if before is not None else _nearest(phase.start or Interval(0, 0), trajectory.start)
+    duration = trajectory.end - trajectory.start
+    end = _nearest(phase.end, start + _nearest(phase.duration, duration))
+    if end <= start:
+        end = start + duration
+    scale = (end - start) / duration if duration > 0 else 1.0
+
+    def stretched(curves: Curves) -> Curves:
+        breaks = start + scale * (curves.breaks - trajectory.start)
+        return Curves(breaks, {name: curve.coefficients for name, curve in curves.items()})
+
+    groups = (trajectory.states, trajectory.controls, trajectory.others)
+    return Trajectory(start, end, *(stretched(group) for group in groups))
+
+
+def _span(phase: Phase, before: float | None, guess: Guess) -> tuple[float, float]:
     """A start and an end within their limits, a typical duration apart."""
-    first = _nearest(start, 0.0)
-    shortest, longest = max(end.lower - first, 0.0), end.upper - first
+    first = before if before is not None else _nearest(phase.start or Interval(0.0, 0.0), 0.0)
+    shortest = max(phase.end.lower - first, phase.duration.lower, 0.0)
+    longest = max(min(phase.end.upper - first, phase.duration.upper), shortest)
+    wanted = getattr(guess, "duration", None)
+    if wanted is not None:
+        return first, first + min(max(wanted, shortest), longest)
     if math.isinf(longest):
         duration = max(2 * shortest, 1.0)
     elif shortest > 0:
         duration = math.sqrt(shortest * longest)
     else:
         duration = longest / 2
-    return first, first + duration
+    return first, first + (duration or 1e-3)
 
 
 def _given(guess: Guess, constants: Mapping[str, float]) -> tuple[Array, dict[str, Array]]:

@@ -1,4 +1,4 @@
-"""What joins the ends of all phases: boundary constraints and the objective, in one stage."""
+"""What joins the ends of all phases: boundary constraints, linkages and the objective, one stage."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -7,15 +7,14 @@ import casadi as ca
 import numpy as np
 
 from solver.expressions import SX, evaluate
-from solver.model import Interval, Model
-from solver.model.symbolic import Ends, PhaseFunctions, boundary_scope, objective_scope
+from solver.model import Constraint, Interval, Model
+from solver.model.symbolic import Ends, PhaseFunctions, Place, boundary_scope, objective_scope
 from solver.nlp.stages import Rows, StageGroup
 from solver.nlp.variables import Array, Variables
 from solver.trajectory import Trajectory
 from solver.transcribe.integrals import classify, guessed_integrals
-from solver.transcribe.layout import PhaseLayout
+from solver.transcribe.layout import PhaseLayout, Shared, TimeSymbols
 from solver.transcribe.segments import limit_magnitude, symbolic_stage
-from solver.transcriptions.base import Transcription
 
 _SHORTEST = 1e-6  # s: a phase of free times keeps its direction
 
@@ -24,12 +23,13 @@ _SHORTEST = 1e-6  # s: a phase of free times keeps its direction
 class Joint:
     """The group of the ends, and what each phase's integrals add to the program's sums.
 
-    ``weights`` has one array (sums, integrals) per phase; ``lifted`` names the lifted integrals.
+    ``weights`` has one array (sums, integrals) per phase; ``lifted`` has name and phase of each
+    lifted integral.
     """
 
     group: StageGroup
     weights: list[Array]
-    lifted: tuple[str, ...]
+    lifted: tuple[tuple[str, int], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +43,7 @@ class _PhaseEnds:
 
 @dataclass(frozen=True, slots=True)
 class _Row:
-    """A boundary constraint in symbols."""
+    """A constraint over ends in symbols."""
 
     name: str
     value: SX
@@ -53,105 +53,144 @@ class _Row:
 def join_ends(
     model: Model,
     layouts: Sequence[PhaseLayout],
-    transcription: Transcription,
     functions: Sequence[PhaseFunctions],
     guesses: Sequence[Trajectory],
+    statics: Sequence[float],
     variables: Variables,
 ) -> Joint:
     """Build the group; lifted integrals are added to ``variables``."""
-    sides = [
-        _phase_ends(layout, transcription, own)
-        for layout, own in zip(layouts, functions, strict=True)
-    ]
+    shared = _one_of_each([layout.shared() for layout in layouts])
+    sides = [_phase_ends(*each) for each in zip(layouts, shared, functions, strict=True)]
     pairs = list(zip(layouts, sides, strict=True))
-    scopes = [boundary_scope(layout.phase, side.ends) for layout, side in pairs]
+    names = [static.name for static in model.statics]
+    scopes = [
+        boundary_scope(
+            layout.phase, side.ends, names, eliminate=layout.transcription.eliminates
+        )
+        for layout, side in pairs
+    ]
+    whole = objective_scope(model, scopes, shared[0].statics)
     rows = [
         row
         for (layout, side), scope in zip(pairs, scopes, strict=True)
         for row in _rows(layout, side.ends, scope)
     ]
-    objective = _objective(model, scopes)
+    rows += [_row(linkage, whole) for linkage in model.linkages]
+    objective = SX(0) if model.objective is None else evaluate(model.objective, whole)
     integrals = ca.vertcat(SX(0, 1), *(side.ends.integrals for side in sides))
     use = classify(objective, ca.vertcat(SX(0, 1), *(row.value for row in rows)), integrals)
 
-    names = [(index, name) for index, phase in enumerate(model.phases) for name in phase.integrals]
+    named = [(name, index) for index, phase in enumerate(model.phases) for name in phase.integrals]
     start = np.concatenate(
-        [guessed_integrals(*pair) for pair in zip(functions, guesses, strict=True)]
+        [
+            guessed_integrals(*each, statics)
+            for each in zip(model.phases, functions, guesses, strict=True)
+        ]
     )
     lifted_columns = [
-        _lift(variables, *names[position], float(start[position])) for position in use.lifted
+        _lift(variables, *named[position], float(start[position])) for position in use.lifted
     ]
     direct, lifted = (_pick(integrals, which) for which in (use.direct, use.lifted))
+    symbols, columns = _shared_variables(shared)
     group = StageGroup(
         phase=None,
-        variables=ca.vertcat(*(side.variables for side in sides), lifted),
+        variables=ca.vertcat(*(side.variables for side in sides), symbols, lifted),
         constants=SX(0, 1),
         columns=np.array(
-            [*(column for side in sides for column in side.columns), *lifted_columns], dtype=int
+            [*(column for side in sides for column in side.columns), *columns, *lifted_columns],
+            dtype=int,
         )[:, None],
         data=np.empty((0, 1)),
         rows=_stacked(rows),
         sums=ca.vertcat(ca.substitute(objective, direct, SX.zeros(*direct.shape)), -lifted),
     )
     weights = use.weights([len(phase.integrals) for phase in model.phases])
-    return Joint(group, weights, tuple(names[position][1] for position in use.lifted))
+    return Joint(group, weights, tuple(named[position] for position in use.lifted))
 
 
-def _phase_ends(
-    layout: PhaseLayout, transcription: Transcription, functions: PhaseFunctions
-) -> _PhaseEnds:
+def _one_of_each(shared: Sequence[Shared]) -> list[Shared]:
+    """The same with one symbol for each variable, over all phases."""
+    symbols: dict[int, SX] = {}
+    unified = []
+    for one in shared:
+        own = [
+            symbols.setdefault(column, one.symbols[i]) for i, column in enumerate(one.columns)
+        ]
+        fresh = ca.vertcat(SX(0, 1), *own)
+        start, end, statics = ca.substitute(
+            [one.times.start, one.times.end, one.statics], [one.symbols], [fresh]
+        )
+        unified.append(Shared(TimeSymbols(start, end), statics, fresh, one.columns))
+    return unified
+
+
+def _shared_variables(shared: Sequence[Shared]) -> tuple[SX, list[int]]:
+    """Times and statics, each once."""
+    found = {
+        int(column): one.symbols[i] for one in shared for i, column in enumerate(one.columns)
+    }
+    return ca.vertcat(SX(0, 1), *found.values()), list(found)
+
+
+def _phase_ends(layout: PhaseLayout, shared: Shared, functions: PhaseFunctions) -> _PhaseEnds:
     """The ends as the transcription completes them, over all variables of both end segments."""
-    times, knots, columns = layout.time_symbols(), layout.mesh.knots, layout.segment_columns()
-    first, last = (
-        symbolic_stage(layout, times, SX([start, end - start]), transcription, functions)
-        for start, end in (knots[:2], knots[-2:])
-    )
-    points = first.collocation.points[0], last.collocation.points[-1]
+    sides = [
+        (
+            symbolic_stage(layout, strip, shared, SX(strip.places[:, segment]), functions),
+            strip.columns()[:, segment].tolist(),
+        )
+        for strip, segment in layout.ends()
+    ]
+    (first, columns), (last, more) = sides
     ends = Ends(
-        x=(points[0].x, points[1].x),
-        u=(points[0].u, points[1].u),
-        t=(times.start, times.end),
+        initial=first.place(first.collocation.points[0]),
+        final=last.place(last.collocation.points[-1]),
         integrals=SX.sym("integral", len(layout.phase.integrals)),
     )
-    where = [*columns[:, 0].tolist(), *columns[:, -1].tolist(), *layout.free_times()]
-    return _PhaseEnds(ends, ca.vertcat(first.own, last.own, times.free), where)
+    return _PhaseEnds(ends, ca.vertcat(first.own, last.own), [*columns, *more])
 
 
 def _pick(symbols: SX, positions: Sequence[int]) -> SX:
     return ca.vertcat(SX(0, 1), *(symbols[i] for i in positions))
 
 
-def _objective(model: Model, scopes: Sequence[Mapping[str, SX]]) -> SX:
-    if model.objective is None:
-        return SX(0)
-    return evaluate(model.objective, objective_scope(model, scopes))
+def _row(row: Constraint, scope: Mapping[str, SX]) -> _Row:
+    return _Row(row.label, evaluate(row.tree, scope), row.limits)
 
 
 def _rows(layout: PhaseLayout, ends: Ends, scope: Mapping[str, SX]) -> list[_Row]:
-    phase = layout.phase
-    rows = [
-        _Row(f"boundary {row.name}", evaluate(row.tree, scope), row.limits)
-        for row in phase.boundary
-    ]
-    if phase.end.lower <= phase.start.upper:
-        limits = Interval(_SHORTEST, float("inf"))
-        rows.append(_Row("positive duration", ends.t[1] - ends.t[0], limits))
-    return [*rows, *_initial_controls(layout, ends)]
+    rows = [_row(row, scope) for row in layout.phase.boundary]
+    if (limits := _duration(layout)) is not None:
+        rows.append(_Row("duration", ends.final.t - ends.initial.t, limits))
+    return [*rows, *_initial_controls(layout, ends.initial)]
 
 
-def _initial_controls(layout: PhaseLayout, ends: Ends) -> list[_Row]:
+def _duration(layout: PhaseLayout) -> Interval | None:
+    """The limits of the duration that those of the times do not imply."""
+    start, end, (least, most) = layout.start, layout.end, layout.phase.duration
+    if end.index is None and start.index is None:
+        return None
+    if start.index is None and end.limits.lower >= start.limits.lower + _SHORTEST:
+        return None  # the duration's limits are in the end's
+    if end.limits.lower > start.limits.upper and not layout.phase.duration.finite:
+        return None
+    return Interval(max(least, _SHORTEST), max(most, _SHORTEST))
+
+
+def _initial_controls(layout: PhaseLayout, initial: Place) -> list[_Row]:
     """Limits of controls at the start where the method has no variable there."""
     phase = layout.phase
-    if len(layout.controls[0]):
+    (strip, _), _ = layout.ends()
+    if len(strip.blocks["control"][0]):
         return []
     return [
-        _Row(f"initial {name}", ends.u[0][i], phase.initial[name])
+        _Row(f"initial {name}", initial.u[i], phase.initial[name])
         for i, name in enumerate(phase.controls)
-        if np.any(np.isfinite(phase.initial[name]))
+        if phase.initial[name].finite
     ]
 
 
-def _lift(variables: Variables, phase: int, name: str, guess: float) -> int:
+def _lift(variables: Variables, name: str, phase: int, guess: float) -> int:
     open_sides = (np.full((1, 1), -np.inf), np.full((1, 1), np.inf))
     scale, start = np.array([max(1.0, abs(guess))]), np.full((1, 1), guess)
     block = variables.add(

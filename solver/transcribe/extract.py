@@ -1,15 +1,17 @@
 """The NLP's point -> trajectories: the one place where arrays turn from CasADi's order."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from footfall.curves import Curves
+from footfall.curves import Curve, Curves, fit
 from schemas.results import CurveGroup, Group, PhaseResult, finite
+from solver.model import Phase
+from solver.nlp.variables import Indices
 from solver.trajectory import Trajectory
-from solver.transcribe.layout import PhaseLayout
+from solver.transcribe.layout import Edge, PhaseLayout, Strip
 from solver.transcribe.transcribe import Transcribed
 from solver.transcriptions.base import Transcription
 
@@ -18,95 +20,168 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class _Nodes:
-    """A phase at all nodes of all segments: x, f, u (segments, nodes, names); its integrals."""
+    """A strip at all nodes of its segments: x, f, u, z (segments, nodes, names); its integrals."""
 
     x: Array
     f: Array
     u: Array
+    z: Array
     integrals: Array
 
 
 def extract(
-    transcribed: Transcribed, transcription: Transcription, w: Array
+    transcribed: Transcribed, w: Array
 ) -> tuple[list[Trajectory], list[PhaseResult]]:
     """Read the trajectories of all phases out of the decision variables ``w`` (SI)."""
     trajectories, results = [], []
     for index, layout in enumerate(transcribed.layouts):
-        start, end = _times(layout, w)
-        nodes = _evaluate(transcribed, index, len(transcription.nodes), w)
-        breaks = start + (end - start) * layout.mesh.knots
-        trajectory = _curves(layout, transcription, nodes, breaks)
+        strips = [
+            _evaluate(transcribed, index, number, w) for number in range(len(layout.strips))
+        ]
+        start, end = (_time(edge, w) for edge in (layout.start, layout.end))
+        trajectory = _trajectory(layout, strips, start, end)
         trajectories.append(trajectory)
-        results.append(_result(layout, transcription, nodes, trajectory))
+        results.append(_result(layout, strips, trajectory))
     return trajectories, results
 
 
-def _times(layout: PhaseLayout, w: Array) -> tuple[float, float]:
-    limits = (layout.phase.start, layout.phase.end)
-    start, end = (
-        side.lower if at is None else float(w[at])
-        for side, at in zip(limits, layout.times, strict=True)
-    )
-    return start, end
+def _time(edge: Edge, w: Array) -> float:
+    return edge.limits.lower if edge.index is None else float(w[edge.index])
 
 
-def _evaluate(transcribed: Transcribed, index: int, count: int, w: Array) -> _Nodes:
-    layout, group = transcribed.layouts[index], transcribed.segments[index]
-    segments = layout.mesh.segments
-    outputs = transcribed.nodes[index].map(segments)(w[group.columns], group.data)
+def _evaluate(transcribed: Transcribed, phase: int, number: int, w: Array) -> _Nodes:
+    group = transcribed.segments[phase][number]
+    strip = transcribed.layouts[phase].strips[number]
+    segments, count = len(strip.where), len(strip.transcription.nodes)
+    outputs = transcribed.nodes[phase][number].map(segments)(w[group.columns], group.data)
 
     def turned(matrix: Array) -> Array:
         """(names, segments * nodes) -> (segments, nodes, names)."""
         return np.moveaxis(matrix.reshape(len(matrix), segments, count), 0, 2)
 
     *series, integrals = (output.full() for output in outputs)
-    x, f, u = (turned(matrix) for matrix in series)
-    return _Nodes(x, f, u, integrals.sum(axis=1))
+    return _Nodes(*(turned(matrix) for matrix in series), integrals.sum(axis=1))
 
 
-def _curves(
-    layout: PhaseLayout, transcription: Transcription, nodes: _Nodes, breaks: Array
+def _trajectory(
+    layout: PhaseLayout, strips: Sequence[_Nodes], start: float, end: float
 ) -> Trajectory:
-    states = transcription.state_curve(nodes.x, nodes.f, np.diff(breaks)[:, None])
-    parts = np.full(layout.mesh.segments, transcription.pieces)
-    fractions = layout.mesh.subdivide(parts).knots
-    breaks = breaks[0] + (breaks[-1] - breaks[0]) * fractions
-    controls = transcription.control_curve(nodes.u)
+    phase, whole = layout.phase, layout.transcription
+    lengths = (end - start) * np.diff(layout.mesh.knots)
+    pieces = np.full(layout.mesh.segments, whole.pieces)
+    breaks = start + (end - start) * layout.mesh.subdivide(pieces).knots
+
+    def curves(names: Sequence[str], make: Callable[[Strip, _Nodes], Array]) -> Curves:
+        parts = [make(*pair) for pair in zip(layout.strips, strips, strict=True)]
+        return Curves(breaks, dict(zip(names, _merged(layout, parts), strict=True)))
+
     return Trajectory(
-        float(breaks[0]),
-        float(breaks[-1]),
-        Curves(breaks, dict(zip(layout.phase.states, states, strict=True))),
-        Curves(breaks, dict(zip(layout.phase.controls, controls, strict=True))),
+        start,
+        end,
+        curves(
+            phase.states,
+            lambda strip, nodes: strip.transcription.state_curve(
+                nodes.x, nodes.f, lengths[strip.where, None]
+            ),
+        ),
+        curves(
+            phase.controls,
+            lambda strip, nodes: strip.transcription.control_curve(
+                nodes.u, lengths[strip.where, None]
+            ),
+        ),
+        curves(phase.algebraic, lambda strip, nodes: _algebraic_curve(strip.transcription, nodes))
+        if strips[0].z.shape[2]
+        else Curves(breaks, {}),
     )
+
+
+def _algebraic_curve(transcription: Transcription, nodes: _Nodes) -> Array:
+    """The polynomial through the nodes with such variables."""
+    which = [i for i, node in enumerate(transcription.nodes) if node.algebraic]
+    return fit(2 * transcription.fractions[which] - 1, nodes.z[:, which])
+
+
+def _merged(layout: PhaseLayout, parts: Sequence[Array]) -> Array:
+    """Coefficients of all segments in order, padded to one degree: (series, pieces, terms)."""
+    if len(parts) == 1:
+        return parts[0]
+    terms = max(part.shape[2] for part in parts)
+    merged = np.zeros((len(parts[0]), layout.mesh.segments, terms))
+    for strip, part in zip(layout.strips, parts, strict=True):
+        merged[:, strip.where, : part.shape[2]] = part
+    return merged
 
 
 def _result(
-    layout: PhaseLayout, transcription: Transcription, nodes: _Nodes, trajectory: Trajectory
+    layout: PhaseLayout, strips: Sequence[_Nodes], trajectory: Trajectory
 ) -> PhaseResult:
     phase, duration = layout.phase, trajectory.end - trajectory.start
-    times = trajectory.start + duration * layout.mesh.fractions(transcription.fractions)
+    table = _node_table(layout, strips, trajectory)
+    totals = np.sum([nodes.integrals for nodes in strips], axis=0)
     return PhaseResult(
         name=phase.name,
         knots=(trajectory.start + duration * layout.mesh.knots).tolist(),
-        groups={
-            "states": _group(phase.states, times, nodes.x),
-            "controls": _group(phase.controls, times, nodes.u),
-        },
+        groups={group: table(names) for group, names in phase.publish.items()},
         curves={
-            "states": CurveGroup.model_validate(trajectory.states.to_dict()),
-            "controls": CurveGroup.model_validate(trajectory.controls.to_dict()),
+            group: _curve_group(trajectory, names)
+            for group, names in phase.publish.items()
+            if names or group in ("states", "controls")
         },
         integrals={
-            name: finite(value)
-            for name, value in zip(phase.integrals, nodes.integrals, strict=True)
+            name: finite(value) for name, value in zip(phase.integrals, totals, strict=True)
         },
     )
 
 
-def _group(names: Sequence[str], times: Array, values: Array) -> Group:
-    """Node values with the knots that neighbours share listed once."""
-    time = np.append(times[:, :-1], times[-1, -1])
-    inner = values[:, :-1].reshape(len(time) - 1, len(names))
-    series = np.concatenate([inner, values[-1:, -1]])
-    columns = {name: [finite(v) for v in series[:, i]] for i, name in enumerate(names)}
-    return Group(time=time.tolist(), values=columns)
+def _curve_group(trajectory: Trajectory, names: Sequence[str]) -> CurveGroup:
+    found: dict[str, Curve] = {}
+    for name in names:
+        curve = trajectory.curve(name)
+        if curve is None:
+            raise LookupError(f"no curve of {name}")
+        found[name] = curve
+    breaks = trajectory.states.breaks
+    curves = Curves(breaks, {name: curve.coefficients for name, curve in found.items()})
+    return CurveGroup.model_validate(curves.to_dict())
+
+
+def _node_table(
+    layout: PhaseLayout, strips: Sequence[_Nodes], trajectory: Trajectory
+) -> Callable[[Sequence[str]], Group]:
+    """A function from names to their values at all nodes, knots that neighbours share once."""
+    where, fraction = _node_places(layout)
+    order = np.argsort(where, kind="stable")
+    keep = order[~np.append(np.diff(where[order]) == 0, False)]
+    duration = trajectory.end - trajectory.start
+    time = (trajectory.start + duration * fraction[keep]).tolist()
+    columns: dict[str, Array] = {}
+    for names, attribute in ((layout.phase.states, "x"), (layout.phase.controls, "u")):
+        stacked = np.concatenate(
+            [
+                values.reshape(values.shape[0] * values.shape[1], len(names))
+                for values in (getattr(nodes, attribute) for nodes in strips)
+            ]
+        )
+        columns |= {name: stacked[keep, i] for i, name in enumerate(names)}
+
+    def group(names: Sequence[str]) -> Group:
+        values = {
+            name: columns[name] if name in columns else trajectory.sample([name], fraction[keep])[0]
+            for name in names
+        }
+        return Group(
+            time=time, values={name: [finite(v) for v in row] for name, row in values.items()}
+        )
+
+    return group
+
+
+def _node_places(layout: PhaseLayout) -> tuple[Array, Array]:
+    """Each node's segment plus its place there, and its fraction of the phase; strip by strip."""
+    where, fractions = [], []
+    for strip in layout.strips:
+        nodes = strip.transcription.fractions
+        where.append((strip.where[:, None] + nodes[None, :]).ravel())
+        fractions.append(strip.fractions(nodes).ravel())
+    return np.concatenate(where), np.concatenate(fractions)

@@ -12,6 +12,7 @@ import casadi as ca
 import numpy as np
 
 from solver.expressions import SX
+from solver.model import Phase
 from solver.model.symbolic import PhaseFunctions
 from solver.nlp.variables import Array
 from solver.trajectory import Trajectory
@@ -49,14 +50,21 @@ def classify(objective: SX, constraints: SX, integrals: SX) -> IntegralUse:
     return IntegralUse(np.array(factors), lifted)
 
 
-def guessed_integrals(functions: PhaseFunctions, guess: Trajectory) -> Array:
+def guessed_integrals(
+    phase: Phase, functions: PhaseFunctions, guess: Trajectory, statics: Sequence[float]
+) -> Array:
     """The integrals (integrals,) along a guess, by the trapezoid rule.
 
     1 where that gives zero or no number: roots and quotients of integrals need a slope there.
     """
     fractions = np.linspace(0.0, 1.0, _SAMPLES)
     times = guess.start + (guess.end - guess.start) * fractions
-    x, u = guess.sample_states(fractions), guess.sample_controls(fractions)
-    integrands = functions.integrands.map(_SAMPLES)(x, u, times[None, :]).full()
+    wanted = functions.integrands.size1_in(2)  # none where unknowns are eliminated
+    series = [
+        guess.sample(names, fractions)
+        for names in (phase.states, phase.controls, phase.algebraic[:wanted], phase.natives)
+    ]
+    constants = np.repeat(np.array(statics, dtype=float)[:, None], _SAMPLES, axis=1)
+    integrands = functions.integrands.map(_SAMPLES)(*series, times[None, :], constants).full()
     totals = np.trapezoid(integrands, times, axis=1)
     return np.where(np.isfinite(totals) & (totals != 0), totals, 1.0)

@@ -1,5 +1,6 @@
 """The stage groups of one phase: its segments, and the path constraints at its knots."""
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import casadi as ca
@@ -7,11 +8,11 @@ import numpy as np
 
 from solver.expressions import SX
 from solver.model import Constraint, Interval
-from solver.model.symbolic import PhaseFunctions
+from solver.model.symbolic import PhaseFunctions, Place, path_rows
 from solver.nlp.stages import Rows, StageGroup
 from solver.nlp.variables import Array, Indices
-from solver.transcribe.layout import PhaseLayout, TimeSymbols
-from solver.transcriptions.base import Collocation, Point, Segment, Transcription
+from solver.transcribe.layout import PhaseLayout, Shared, Strip
+from solver.transcriptions.base import Collocation, Point, Segment
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,175 +22,198 @@ class SymbolicStage:
     own: SX
     h: SX
     collocation: Collocation
+    functions: PhaseFunctions
+    statics: SX
 
+    def place(self, point: Point) -> Place:
+        """A point of the segment as the functions take it."""
+        return Place(point.x, point.u, point.z, point.natives, point.t, self.statics)
 
-def segment_group(
-    index: int,
-    layout: PhaseLayout,
-    transcription: Transcription,
-    functions: PhaseFunctions,
-    weights: Array,
-) -> StageGroup:
-    """Defects, quadrature, and constraints at nodes inside of the segments.
+    def at(self, function: ca.Function, point: Point) -> SX:
+        """A function's value at a point of the segment."""
+        return SX(function(*self.place(point).arguments()))
 
-    ``weights`` (sums, integrals) says what each integral adds to each sum of the program.
-    """
-    place, times = SX.sym("place", 2), layout.time_symbols()
-    stage = symbolic_stage(layout, times, place, transcription, functions)
-    quadrature = _quadrature(stage, functions)
-    return StageGroup(
-        phase=index,
-        variables=ca.vertcat(stage.own, times.free),
-        constants=place,
-        columns=_with_times(layout.segment_columns(), layout),
-        data=np.stack([layout.mesh.knots[:-1], np.diff(layout.mesh.knots)]),
-        rows=_segment_rows(layout, transcription, functions, stage.collocation),
-        sums=ca.mtimes(ca.DM(weights), quadrature) if weights.size else SX(weights.shape[0], 1),
-    )
-
-
-def segment_nodes(
-    layout: PhaseLayout, transcription: Transcription, functions: PhaseFunctions
-) -> ca.Function:
-    """Segment's variables, constants -> x, f, u (names, nodes), and its integrals (integrals,)."""
-    place, times = SX.sym("place", 2), layout.time_symbols()
-    stage = symbolic_stage(layout, times, place, transcription, functions)
-    points = stage.collocation.points
-    outputs = [
-        ca.horzcat(*(point.x for point in points)),
-        ca.horzcat(*(functions.derivatives(point.x, point.u, point.t) for point in points)),
-        ca.horzcat(*(point.u for point in points)),
-        _quadrature(stage, functions),
-    ]
-    return ca.Function("nodes", [ca.vertcat(stage.own, times.free), place], outputs)
-
-
-def _quadrature(stage: SymbolicStage, functions: PhaseFunctions) -> SX:
-    """The integrals over one segment, by the transcription's own rule."""
-    return stage.h * sum(
-        weight * functions.integrands(point.x, point.u, point.t)
-        for weight, point in stage.collocation.quadrature
-    )
-
-
-def knot_group(
-    index: int,
-    layout: PhaseLayout,
-    transcription: Transcription,
-    functions: PhaseFunctions,
-    sums: int,
-) -> list[StageGroup]:
-    """Path constraints at shared knots; nothing where there are none of either."""
-    path = layout.phase.path
-    if not path or not transcription.shares_controls:
-        return []
-    times, fraction = layout.time_symbols(), SX.sym("fraction")
-    x = SX.sym("x", len(layout.phase.states))
-    u = SX.sym("u", len(layout.phase.controls))
-    knots = layout.mesh.knots[None, :]
-    rows = _path_rows(path, functions.path(x, u, times.at(fraction)), knots)
-    columns = _with_times(layout.knot_columns(), layout)
-    variables = ca.vertcat(x, u, times.free)
-    return [StageGroup(index, variables, fraction, columns, knots, rows, SX(sums, 1))]
-
-
-def _with_times(columns: Indices, layout: PhaseLayout) -> Indices:
-    times = np.array(layout.free_times(), dtype=int)[:, None]
-    return np.concatenate([columns, np.repeat(times, columns.shape[1], axis=1)])
+    def quadrature(self) -> SX:
+        """The integrals over the segment, by the transcription's own rule."""
+        terms = [
+            weight * self.at(self.functions.integrands, point)
+            for weight, point in self.collocation.quadrature
+        ]
+        return self.h * sum(terms[1:], start=terms[0])
 
 
 def symbolic_stage(
-    layout: PhaseLayout,
-    times: TimeSymbols,
-    place: SX,
-    transcription: Transcription,
-    functions: PhaseFunctions,
+    layout: PhaseLayout, strip: Strip, shared: Shared, place: SX, functions: PhaseFunctions
 ) -> SymbolicStage:
     """A segment's symbols, completed by the transcription.
 
     ``place`` (2,) is where it starts in the phase and its width, as fractions of the duration.
     """
     fraction, width = ca.vertsplit(place)
+    times, blocks = shared.times, strip.blocks
     points = tuple(
         Point(
-            SX.sym("x", states.shape[0]),
-            SX.sym("u", controls.shape[0]),
+            *(SX.sym(kind[0], len(blocks[kind][i])) for kind in ("state", "control", "algebraic")),
             times.at(fraction + node.fraction * width),
         )
-        for node, states, controls in zip(
-            transcription.nodes, layout.states, layout.controls, strict=True
-        )
+        for i, node in enumerate(strip.transcription.nodes)
     )
     h = (times.end - times.start) * width
-    collocation = transcription.collocate(
-        Segment(points, h, lambda point: functions.derivatives(point.x, point.u, point.t))
+
+    def derivative(point: Point) -> SX:
+        return SX(functions.derivatives(*_arguments(point, shared.statics)))
+
+    def flow(natives: SX, t: SX) -> SX:
+        return SX(functions.flow(natives, t, shared.statics))
+
+    collocation = strip.transcription.collocate(Segment(points, h, derivative, flow))
+    own = ca.vertcat(*(part for point in points for part in (point.x, point.u, point.z)))
+    return SymbolicStage(own, h, collocation, functions, shared.statics)
+
+
+def _arguments(point: Point, statics: SX) -> list[SX]:
+    return Place(point.x, point.u, point.z, point.natives, point.t, statics).arguments()
+
+
+def segment_group(
+    index: int, layout: PhaseLayout, strip: Strip, functions: PhaseFunctions, weights: Array
+) -> StageGroup:
+    """Defects, quadrature, and constraints at nodes inside of the segments.
+
+    ``weights`` (sums, integrals) says what each integral adds to each sum of the program.
+    """
+    place, shared = SX.sym("place", 2), layout.shared()
+    stage = symbolic_stage(layout, strip, shared, place, functions)
+    sums = ca.mtimes(ca.DM(weights), stage.quadrature()) if weights.size else SX(len(weights), 1)
+    return StageGroup(
+        phase=index,
+        variables=ca.vertcat(stage.own, shared.symbols),
+        constants=place,
+        columns=_with_shared(strip.columns(), shared),
+        data=strip.places,
+        rows=_segment_rows(layout, strip, stage),
+        sums=sums,
     )
-    own = ca.vertcat(*(part for point in points for part in (point.x, point.u)))
-    return SymbolicStage(own, h, collocation)
 
 
-def _segment_rows(
-    layout: PhaseLayout,
-    transcription: Transcription,
-    functions: PhaseFunctions,
-    collocation: Collocation,
-) -> Rows:
-    phase = layout.phase
-    repeats = collocation.defects.numel() // len(phase.states)
-    middles = layout.mesh.fractions(np.array([0.5])).T
-    parts = [
-        Rows(
-            collocation.defects,
-            tuple(f"defect {name}" for name in phase.states) * repeats,
-            np.zeros(collocation.defects.numel()),
-            np.zeros(collocation.defects.numel()),
-            np.tile(layout.state_scale, repeats),
-            np.repeat(middles, collocation.defects.numel(), axis=0),
-        )
+def segment_nodes(
+    layout: PhaseLayout, strip: Strip, functions: PhaseFunctions
+) -> ca.Function:
+    """Segment's variables, constants -> x, f, u, z (names, nodes), and its integrals.
+
+    ``z`` is zero at nodes without algebraic variables.
+    """
+    place, shared = SX.sym("place", 2), layout.shared()
+    stage = symbolic_stage(layout, strip, shared, place, functions)
+    points = stage.collocation.points
+    outputs = [
+        ca.horzcat(*(point.x for point in points)),
+        ca.horzcat(*(stage.at(functions.derivatives, point) for point in points)),
+        ca.horzcat(*(point.u for point in points)),
+        ca.horzcat(*(point.z for point in points)),
+        stage.quadrature(),
     ]
+    return ca.Function("nodes", [ca.vertcat(stage.own, shared.symbols), place], outputs)
+
+
+def knot_group(
+    index: int, layout: PhaseLayout, functions: PhaseFunctions, sums: int
+) -> list[StageGroup]:
+    """Path constraints at shared knots; nothing where there are none of either."""
+    transcription = layout.transcription
+    path = path_rows(layout.phase, eliminate=transcription.eliminates)
+    which = [i for i in range(len(path)) if i not in functions.native_rows]
+    if not which or not transcription.shares_controls:
+        return []
+    shared, fraction = layout.shared(), SX.sym("fraction")
+    own = [SX.sym(kind[0], len(columns)) for kind, columns in layout.knots.items()]
+    natives = SX.zeros(len(layout.phase.natives), 1)  # no row of these uses them
+    place = Place(*own, natives, shared.times.at(fraction), shared.statics)
+    knots = layout.mesh.knots[None, :]
+    rows = _path_rows(path, which, SX(functions.path(*place.arguments())), knots)
+    columns = _with_shared(layout.knot_columns(), shared)
+    variables = ca.vertcat(*own, shared.symbols)
+    return [StageGroup(index, variables, fraction, columns, knots, rows, SX(sums, 1))]
+
+
+def _with_shared(columns: Indices, shared: Shared) -> Indices:
+    return np.concatenate(
+        [columns, np.repeat(shared.columns[:, None], columns.shape[1], axis=1)]
+    )
+
+
+def _segment_rows(layout: PhaseLayout, strip: Strip, stage: SymbolicStage) -> Rows:
+    transcription, collocation = strip.transcription, stage.collocation
+    parts = [_defect_rows(layout, strip, collocation)]
+    path = path_rows(layout.phase, eliminate=transcription.eliminates)
+    plain = [i for i in range(len(path)) if i not in stage.functions.native_rows]
     last = len(transcription.nodes) - 1
     for index, (node, point) in enumerate(
         zip(transcription.nodes, collocation.points, strict=True)
     ):
+        where = strip.fractions(np.array([node.fraction])).T
+        values = stage.at(stage.functions.path, point)
+        parts.append(_path_rows(path, sorted(stage.functions.native_rows), values, where))
         at_knot = index in (0, last)
         if at_knot and (transcription.shares_controls or not node.control):
             continue
-        where = layout.mesh.fractions(np.array([node.fraction])).T
-        if phase.path:
-            parts.append(_path_rows(phase.path, functions.path(point.x, point.u, point.t), where))
+        parts.append(_path_rows(path, plain, values, where))
         if not node.state:
-            parts.extend(_bound_rows(layout, point, where))
-    return _stacked(parts)
+            parts.append(_bound_rows(layout, layout.phase.states, point.x, where))
+        if not node.control and transcription.native:
+            parts.append(_bound_rows(layout, layout.phase.controls, point.u, where))
+    return _stacked([part for part in parts if part.names] or parts[:1])
 
 
-def _bound_rows(layout: PhaseLayout, point: Point, where: Array) -> list[Rows]:
-    """Bounds on states that are no variables, as rows."""
-    phase = layout.phase
-    bounded = [i for i, name in enumerate(phase.states) if np.any(np.isfinite(phase.bounds[name]))]
-    if not bounded:
-        return []
-    lower, upper = np.array([phase.bounds[phase.states[i]] for i in bounded]).T
-    return [
-        Rows(
-            ca.vertcat(*(point.x[i] for i in bounded)),
-            tuple(f"bound {phase.states[i]}" for i in bounded),
-            lower,
-            upper,
-            layout.state_scale[bounded],
-            np.repeat(where, len(bounded), axis=0),
-        )
-    ]
-
-
-def _path_rows(path: tuple[Constraint, ...], values: SX, where: Array) -> Rows:
-    limits = [row.limits for row in path]
+def _defect_rows(layout: PhaseLayout, strip: Strip, collocation: Collocation) -> Rows:
+    count = collocation.defects.numel()
+    repeats = count // len(layout.phase.states)
+    middles = strip.fractions(np.array([0.5])).T
     return Rows(
-        values,
-        tuple(f"path {row.name}" for row in path),
+        collocation.defects,
+        tuple(f"defect {name}" for name in layout.phase.states) * repeats,
+        np.zeros(count),
+        np.zeros(count),
+        np.tile(layout.state_scale, repeats),
+        np.repeat(middles, count, axis=0),
+    )
+
+
+def _bound_rows(layout: PhaseLayout, names: Sequence[str], values: SX, where: Array) -> Rows:
+    """Bounds on what is no variable here, as rows."""
+    bounds = layout.phase.bounds
+    bounded = [i for i, name in enumerate(names) if bounds[name].finite]
+    return _rows(
+        [f"bound {names[i]}" for i in bounded],
+        [values[i] for i in bounded],
+        [bounds[names[i]] for i in bounded],
+        where,
+    )
+
+
+def _path_rows(
+    path: Sequence[Constraint], which: Iterable[int], values: SX, where: Array
+) -> Rows:
+    rows = [(path[i], values[i]) for i in which]
+    return _rows(
+        [row.label for row, _ in rows],
+        [value for _, value in rows],
+        [row.limits for row, _ in rows],
+        where,
+    )
+
+
+def _rows(
+    names: Sequence[str], values: Sequence[SX], limits: Sequence[Interval], where: Array
+) -> Rows:
+    """Rows at one node of each segment, which lies at ``where`` (1, segments)."""
+    return Rows(
+        ca.vertcat(SX(0, 1), *values),
+        tuple(names),
         np.array([side.lower for side in limits]),
         np.array([side.upper for side in limits]),
         np.array([limit_magnitude(side) for side in limits]),
-        np.repeat(where, len(path), axis=0),
+        np.repeat(where, len(names), axis=0),
     )
 
 
@@ -198,7 +222,7 @@ def limit_magnitude(limits: Interval) -> float:
     return max(1.0, *(abs(side) for side in limits if np.isfinite(side)))
 
 
-def _stacked(parts: list[Rows]) -> Rows:
+def _stacked(parts: Sequence[Rows]) -> Rows:
     return Rows(
         ca.vertcat(*(part.expression for part in parts)),
         tuple(name for part in parts for name in part.names),

@@ -7,7 +7,7 @@ enrol it from there.
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,29 +19,43 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Node:
-    """A node of a segment at ``fraction`` in [0, 1]; whether it carries decision variables."""
+    """A node of a segment at ``fraction`` in [0, 1]; whether it carries decision variables.
+
+    ``algebraic`` variables stand wherever the dynamics or the integrands are evaluated.
+    """
 
     fraction: float
     state: bool = True
     control: bool = True
+    algebraic: bool = True
 
 
 @dataclass(frozen=True, slots=True)
 class Point:
-    """State (n_x,), control (n_u,) and time (scalar) at a node; SI units."""
+    """State (n_x,), control (n_u,), algebraic values (n_z,) and time at a node; SI units.
+
+    ``natives`` (n_n,) are what the method itself supplies there.
+    """
 
     x: SX
     u: SX
+    z: SX
     t: SX
+    natives: SX = field(default_factory=lambda: SX(0, 1))
 
 
 @dataclass(frozen=True, slots=True)
 class Segment:
-    """A segment as symbols. Where a node carries no variable, ``x`` or ``u`` is empty."""
+    """A segment as symbols. Where a node carries no variable, ``x``, ``u`` or ``z`` is empty.
+
+    ``derivative`` gives the rates of the states at a point; ``flow`` the states of a closed form
+    at a time, from its natives.
+    """
 
     points: tuple[Point, ...]
     h: SX
     derivative: Callable[[Point], SX]
+    flow: Callable[[SX, SX], SX]
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +67,8 @@ class Collocation:
     points
         The points at all nodes.
     defects
-        What shall vanish, in the states' units; a whole number of times the states.
+        What shall vanish, in the states' units; a whole number of times the states, or nothing
+        where the path constraints say it all.
     quadrature
         Weights and points whose weighted sum, times h, integrates along the segment.
     """
@@ -83,6 +98,14 @@ class Transcription(ABC):
         The quadrature weights at the nodes, for a segment of length one; for ``weighted``.
     pieces
         Polynomials of a curve on each segment.
+    native
+        Whether the method differentiates its own curves; it then takes the native form of
+        second-order systems (``solver.lowering.lower_native``).
+    eliminates
+        Whether unknown accelerations must be eliminated, since the dynamics are evaluated
+        between the nodes, where there are no variables for them.
+    rigid
+        Whether the mesh is not to be refined.
     """
 
     order: int | None
@@ -91,6 +114,19 @@ class Transcription(ABC):
     nodes: tuple[Node, ...]
     weights: tuple[float, ...] = ()
     pieces: int = 1
+    native: bool = False
+    eliminates: bool = False
+    rigid: bool = False
+
+    def at_degree(self, points: int) -> "Transcription":
+        """The same method with so many collocation points a segment, where that can be chosen."""
+        del points
+        return self
+
+    @property
+    def degree(self) -> int | None:
+        """Collocation points a segment, where each segment may have its own; else None."""
+        return None
 
     @property
     def fractions(self) -> Array:
@@ -120,5 +156,22 @@ class Transcription(ABC):
         """
 
     @abstractmethod
-    def control_curve(self, u: Array) -> Array:
-        """Interpolate the controls, given as (segments, nodes, controls), in the same form."""
+    def control_curve(self, u: Array, h: Array) -> Array:
+        """Interpolate the controls, given as (segments, nodes, controls), in the same way."""
+
+    def costates(self, multipliers: Array, states: int) -> tuple[Array, Array] | None:
+        """The costates that the defects' multipliers stand for, where the method knows them.
+
+        Parameters
+        ----------
+        multipliers
+            Of the rows of each segment, the defects first, (segments, rows).
+        states
+            The number of states.
+
+        Returns
+        -------
+        Places in [0, 1] of a segment (k,), and the costates there (segments, k, states).
+        """
+        del multipliers, states
+        return None

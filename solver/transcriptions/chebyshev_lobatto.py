@@ -1,6 +1,7 @@
 """Chebyshev-Lobatto collocation, global where there is one segment (003, section 7.14)."""
 
 import casadi as ca
+import numpy as np
 
 from footfall.curves import fit
 from solver.expressions import SX
@@ -39,11 +40,19 @@ class ChebyshevLobatto(Transcription):
         slopes = ca.mtimes(x, ca.DM(self._derivative.T))
         return Collocation(points, ca.vec(SX(slopes - segment.h * f)), self.weighted(points))
 
+    def costates(self, multipliers: Array, states: int) -> tuple[Array, Array]:
+        """At the nodes inside of a segment, multipliers over weights."""
+        count = len(self.nodes)
+        rows = multipliers[:, : count * states].reshape(-1, count, states)
+        inner = slice(1, count - 1)
+        return self.fractions[inner], (-rows / np.array(self.weights)[:, None])[:, inner]
+
     def state_curve(self, x: Array, f: Array, h: Array) -> Array:
         """The polynomial through the nodes."""
         del f, h
         return fit(2 * self.fractions - 1, x)
 
-    def control_curve(self, u: Array) -> Array:
+    def control_curve(self, u: Array, h: Array) -> Array:
         """The polynomial through the nodes."""
+        del h
         return fit(2 * self.fractions - 1, u)

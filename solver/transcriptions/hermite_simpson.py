@@ -42,11 +42,17 @@ class HermiteSimpson(Transcription):
         m = Point(
             middle.x if self.separated else hermite,
             middle.u if self.quadratic else (a.u + b.u) / 2,
+            middle.z,
             middle.t,
         )
         simpson = b.x - a.x - h / 6 * (fa + 4 * segment.derivative(m) + fb)
         defects = [m.x - hermite, simpson] if self.separated else [simpson]
         return Collocation((a, m, b), ca.vertcat(*defects), self.weighted((a, m, b)))
+
+    def costates(self, multipliers: Array, states: int) -> tuple[Array, Array]:
+        """Simpson's defect spans its segment: its multiplier belongs to the middle."""
+        first = states if self.separated else 0
+        return np.array([0.5]), -multipliers[:, None, first : first + states]
 
     def state_curve(self, x: Array, f: Array, h: Array) -> Array:
         """Cubic from the state at the start and the three slopes (7.13.5)."""
@@ -54,8 +60,9 @@ class HermiteSimpson(Transcription):
         powers = [x[:, 0], a, -(3 * a - 4 * m + b) / 2, 2 / 3 * (a - 2 * m + b)]
         return from_powers(np.stack(powers, axis=1))
 
-    def control_curve(self, u: Array) -> Array:
+    def control_curve(self, u: Array, h: Array) -> Array:
         """Quadratic through the midpoint (7.13.4), or linear between the knots."""
+        del h
         if self.quadratic:
             return fit(2 * self.fractions - 1, u)
         return fit([-1.0, 1.0], u[:, [0, 2]])

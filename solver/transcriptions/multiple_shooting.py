@@ -21,6 +21,7 @@ class MultipleShooting(Transcription):
     """
 
     order = error_order = 4
+    eliminates = True
 
     def __init__(self, steps: int) -> None:
         self.pieces = steps
@@ -37,13 +38,17 @@ class MultipleShooting(Transcription):
                 (weight / (6 * self.pieces), stage)
                 for weight, stage in zip((1, 2, 2, 1), stages, strict=True)
             ]
-            arrival = Point(reached, end.u, end.t)
+            arrival = Point(reached, end.u, end.z, end.t)
             slopes = segment.derivative(at) - segment.derivative(arrival)
             halfway = (at.x + reached) / 2 + h / 8 * slopes
-            points += [Point(halfway, middle.u, middle.t), arrival]
+            points += [Point(halfway, middle.u, middle.z, middle.t), arrival]
             at = arrival
         points[-1] = nodes[-1]
         return Collocation(tuple(points), nodes[-1].x - at.x, tuple(quadrature))
+
+    def costates(self, multipliers: Array, states: int) -> tuple[Array, Array]:
+        """The gap lies at the segment's end."""
+        return np.array([1.0]), -multipliers[:, None, :states]
 
     def state_curve(self, x: Array, f: Array, h: Array) -> Array:
         """Cubic on each step, from the states and slopes at its ends."""
@@ -56,8 +61,9 @@ class MultipleShooting(Transcription):
         powers = [a, fa, 3 * rise - 2 * fa - fb, fa + fb - 2 * rise]
         return from_powers(np.stack(powers, axis=1))
 
-    def control_curve(self, u: Array) -> Array:
+    def control_curve(self, u: Array, h: Array) -> Array:
         """Quadratic on each step."""
+        del h
         parts = np.stack([u[:, :-1:2], u[:, 1::2], u[:, 2::2]], axis=2)
         return fit([-1.0, 0.0, 1.0], parts.reshape(-1, 3, u.shape[2]))
 
@@ -69,6 +75,6 @@ def _step(
     stages = [start]
     for share, node in ((0.5, middle), (0.5, middle), (1.0, end)):
         ahead = start.x + share * h * segment.derivative(stages[-1])
-        stages.append(Point(ahead, node.u, node.t))
+        stages.append(Point(ahead, node.u, node.z, node.t))
     k1, k2, k3, k4 = (segment.derivative(stage) for stage in stages)
     return stages, start.x + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)

@@ -31,27 +31,46 @@ class Radau(Transcription):
         self.order = 2 * points - 1
         self.error_order = points + 1
         self.shares_controls = False
-        self.nodes = (Node(0.0, control=False), *(Node(fraction) for fraction in inner))
+        self.nodes = (Node(0.0, control=False, algebraic=False), *(Node(fraction) for fraction in inner))
         self._places = np.array(inner)
         self.weights = (0.0, *quadrature_weights(self._places))
         self._derivative = differentiation_matrix(self.fractions)[1:]
         self._start = interpolation_row(self._places, 0.0)
 
+    @property
+    def degree(self) -> int:
+        """The collocation points."""
+        return len(self._places)
+
+    def at_degree(self, points: int) -> "Radau":
+        """The same with another number of collocation points."""
+        return Radau(points)
+
     def collocate(self, segment: Segment) -> Collocation:
         """The state's slope is the derivative at the Radau points: D X = h F."""
         first, *inner = segment.points
-        u = ca.horzcat(*(point.u for point in inner))
-        points = (Point(first.x, ca.mtimes(u, ca.DM(self._start)), first.t), *inner)
+        u, z = (
+            ca.mtimes(ca.horzcat(*(getattr(point, name) for point in inner)), ca.DM(self._start))
+            for name in ("u", "z")
+        )
+        points = (Point(first.x, u, z, first.t), *inner)
         x = ca.horzcat(first.x, *(point.x for point in inner))
         f = ca.horzcat(*(segment.derivative(point) for point in inner))
         slopes = ca.mtimes(x, ca.DM(self._derivative.T))
         return Collocation(points, ca.vec(SX(slopes - segment.h * f)), self.weighted(points))
+
+    def costates(self, multipliers: Array, states: int) -> tuple[Array, Array]:
+        """At the Radau points, multipliers over weights (Garg et al., 2010, equation 57)."""
+        count = len(self._places)
+        rows = multipliers[:, : count * states].reshape(-1, count, states)
+        return self._places, -rows / np.array(self.weights[1:])[:, None]
 
     def state_curve(self, x: Array, f: Array, h: Array) -> Array:
         """The polynomial through the start and the Radau points."""
         del f, h
         return fit(2 * self.fractions - 1, x)
 
-    def control_curve(self, u: Array) -> Array:
+    def control_curve(self, u: Array, h: Array) -> Array:
         """The polynomial through the Radau points."""
+        del h
         return fit(2 * self._places - 1, u[:, 1:])

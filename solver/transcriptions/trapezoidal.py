@@ -21,12 +21,17 @@ class Trapezoidal(Transcription):
         defects = b.x - a.x - segment.h * mean
         return Collocation(segment.points, defects, self.weighted(segment.points))
 
+    def costates(self, multipliers: Array, states: int) -> tuple[Array, Array]:
+        """A defect spans its segment: its multiplier belongs to the middle."""
+        return np.array([0.5]), -multipliers[:, None, :states]
+
     def state_curve(self, x: Array, f: Array, h: Array) -> Array:
         """Quadratic from the state at the start and the two slopes (7.13.3)."""
         slopes = h[:, None] * f
         powers = [x[:, 0], slopes[:, 0], (slopes[:, 1] - slopes[:, 0]) / 2]
         return from_powers(np.stack(powers, axis=1))
 
-    def control_curve(self, u: Array) -> Array:
+    def control_curve(self, u: Array, h: Array) -> Array:
         """Linear between the knots (7.13.2)."""
+        del h
         return fit(2 * self.fractions - 1, u)

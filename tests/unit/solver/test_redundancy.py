@@ -8,14 +8,11 @@ import pytest
 import examples
 from schemas.reading import read_problem
 from schemas.results import SolutionStatus
-from solver.mesh import Mesh
-from solver.model import build_model
+from solver.prepare import prepare
 from solver.nlp.redundancy import Redundancy, find_redundancy
 from solver.nlp.scaling import typical_scaling
 from solver.nlp.task import NlpTask
-from solver.trajectory import initial_guess
 from solver.transcribe import transcribe
-from solver.transcriptions import make_transcription
 from tests.unit.solver.problems import block, solved
 
 
@@ -63,10 +60,7 @@ def test_an_ordinary_problem_loses_nothing() -> None:
 
 def found(document: dict[str, Any]) -> Redundancy:
     problem = read_problem(document)
-    model = build_model(problem)
-    meshes = [Mesh.uniform(problem.method.segments) for _ in model.phases]
-    guesses = [initial_guess(phase, problem.guess) for phase in model.phases]
-    program = transcribe(model, make_transcription(problem.method), meshes, guesses).program
+    program = transcribe(*prepare(problem)).program
     scaling = typical_scaling(program)
     return find_redundancy(program, scaling, NlpTask.of(program, scaling).nlp)
 

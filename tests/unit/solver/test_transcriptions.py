@@ -41,10 +41,10 @@ def test_the_knots_carry_states_and_controls(transcription: Transcription) -> No
 
 def test_the_quadrature_integrates_a_straight_line(transcription: Transcription) -> None:
     points = tuple(
-        Point(SX.zeros(int(node.state)), SX.zeros(int(node.control)), SX(node.fraction))
+        Point(SX.zeros(int(node.state)), SX.zeros(int(node.control)), SX(0, 1), SX(node.fraction))
         for node in transcription.nodes
     )
-    segment = Segment(points, SX(1), lambda point: SX.zeros(point.x.shape))
+    segment = Segment(points, SX(1), lambda point: SX.zeros(point.x.shape), lambda *_: SX(0, 1))
     quadrature = transcription.collocate(segment).quadrature
     assert sum(weight for weight, _ in quadrature) == pytest.approx(1)
     assert sum(weight * float(point.t) for weight, point in quadrature) == pytest.approx(1 / 2)

@@ -1,0 +1,185 @@
+"""Every system as a form: by integrators, algebraic unknowns and definitions."""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from itertools import pairwise
+
+from schemas import resolve
+from schemas.errors import InvalidModel, Issue
+from schemas.expressions import Call, Name, Tree, derivative, names_in, split
+from schemas.pointers import pointer
+from schemas.problem import Problem
+from schemas.systems import SecondOrder, System
+from solver.lowering.derivations import CannotDerive, Derivations
+from solver.lowering.form import Form, Unknowns
+from solver.lowering.motion import Motion, motion_of
+from solver.lowering.uses import used_series
+
+
+def lower(problem: Problem) -> tuple[Form, ...]:
+    """Each phase in first-order form.
+
+    Accelerations that are given by residuals become unknowns, and so do their derivatives: a
+    differentiated residual is linear in the highest one. A control whose rate is needed becomes a
+    state, its rate the control (a chain of integrators, as long as needed).
+
+    Raises
+    ------
+    InvalidModel
+        Where a name is defined by itself.
+    """
+    return tuple(_guarded(_lower, problem, index) for index in range(len(problem.phases)))
+
+
+def lower_native(problem: Problem, index: int) -> Form:
+    """A second-order phase for a method that differentiates its own curves.
+
+    Coordinates have derivatives to the fourth order and controls to the second; the dynamics are
+    residuals over them.
+
+    Raises
+    ------
+    InvalidModel
+        Where a name is defined by itself, or a higher derivative is needed.
+    """
+    return _guarded(_lower_native, problem, index)
+
+
+def _guarded(way: Callable[[Problem, int], Form], problem: Problem, index: int) -> Form:
+    try:
+        return way(problem, index)
+    except CannotDerive as error:
+        raise InvalidModel([Issue(pointer("phases", index, "system"), str(error))]) from None
+
+
+def _lower(problem: Problem, index: int) -> Form:
+    system = problem.phases[index].system
+    constants = resolve.parameters(system)
+    motion = motion_of(system)
+    states, controls = system.state_names, system.control_names
+
+    def is_leaf(name: str) -> bool:
+        _, order, base = split(name)
+        unknown = base in motion.implicit and order > 1
+        return name in states or base in controls or unknown
+
+    derivations = Derivations(motion.trees, constants, problem.static, is_leaf)
+    needed = [*used_series(problem, index), *_names(motion.derivatives.values())]
+    needed += _names(motion.flow.values())
+    derivations.demand(needed)
+    groups = _unknowns(derivations, motion, needed)
+    needed += _names(row for group in groups for row in group.residuals)
+    definitions = derivations.definitions(needed)
+    chains = _chains(controls, [*needed, *_names(definitions.values())])
+    return Form(
+        constants=constants,
+        states=(*states, *(name for chain in chains for name in chain[:-1])),
+        controls=tuple(chain[-1] for chain in chains),
+        definitions=definitions,
+        derivatives=_first_order(motion, definitions, chains),
+        unknowns=groups,
+        flow=motion.flow,
+        publish=_publish(system, chains),
+    )
+
+
+def _lower_native(problem: Problem, index: int) -> Form:
+    system = problem.phases[index].system
+    if not isinstance(system, SecondOrder):
+        raise CannotDerive("a first-order system has no native form")
+    constants = resolve.parameters(system)
+    motion = motion_of(system)
+    q, u = system.coordinates, system.controls
+    states, controls = _orders(q, range(3)), _orders(u, range(2))
+    natives = (*_orders(q, range(3, 5)), *_orders(u, [2]))
+    leaves = {*states, *controls, *natives}
+    derivations = Derivations(motion.trees, constants, problem.static, leaves.__contains__)
+    residuals = _residuals(motion, q)
+    needed = [*used_series(problem, index), *_names(residuals.values())]
+    derivations.demand(needed)
+    definitions = derivations.definitions(needed)
+    chains = _chains(u, [*needed, *_names(definitions.values())])
+    return Form(
+        constants=constants,
+        states=states,
+        controls=controls,
+        definitions=definitions,
+        derivatives={},
+        natives=natives,
+        residuals=residuals,
+        publish=_publish(system, chains),
+    )
+
+
+def _names(trees: Iterable[Tree]) -> list[str]:
+    return [name.name for tree in trees for name in names_in(tree)]
+
+
+def _orders(names: Sequence[str], orders: Iterable[int]) -> tuple[str, ...]:
+    """The derivatives of all names, order by order."""
+    return tuple(derivative(name, order) for order in orders for name in names)
+
+
+def _unknowns(
+    derivations: Derivations, motion: Motion, needed: Sequence[str]
+) -> tuple[Unknowns, ...]:
+    """Accelerations from the residuals, and as many derivatives of both as are needed."""
+    if not motion.implicit:
+        return ()
+    groups = []
+    highest = _highest(motion.implicit, derivations.all_names(needed))
+    for order in range(2, highest + 1):
+        rows = [derivative(row, order - 2) for row in motion.rows]
+        derivations.demand(rows)
+        trees = tuple(derivations.trees(rows))
+        inside = _highest(motion.implicit, derivations.all_names(_names(trees)))
+        if inside > order:
+            raise CannotDerive(f"the residuals need derivatives of order {inside - order + 2}")
+        names = _orders(motion.implicit, [order])
+        groups.append(Unknowns(names, trees, tuple(_label(row) for row in rows)))
+    return tuple(groups)
+
+
+def _label(row: str) -> str:
+    _, order, base = split(row)
+    return derivative(f"dynamics {base.removeprefix('#')}", order)
+
+
+def _highest(bases: Sequence[str], names: Iterable[str]) -> int:
+    return max((order for _, order, base in map(split, names) if base in bases), default=0)
+
+
+def _chains(controls: Sequence[str], names: Sequence[str]) -> list[tuple[str, ...]]:
+    """For each control its derivatives, from none to the highest that is used."""
+    return [_orders([u], range(_highest([u], names) + 1)) for u in controls]
+
+
+def _first_order(
+    motion: Motion, definitions: Mapping[str, Tree], chains: Iterable[tuple[str, ...]]
+) -> dict[str, Tree]:
+    """The rate of every state; by name where that is a definition already."""
+    rates: dict[str, Tree] = {}
+    for name, tree in motion.derivatives.items():
+        rate = derivative(name)
+        rates[name] = Name(rate) if rate in definitions else tree
+    for chain in chains:
+        rates |= {name: Name(rate) for name, rate in pairwise(chain)}
+    return rates
+
+
+def _residuals(motion: Motion, coordinates: Sequence[str]) -> dict[str, Tree]:
+    """What is zero along the motion, label -> tree."""
+    if motion.rows:
+        return {_label(row): motion.trees[row] for row in motion.rows}
+    accelerations = {name: derivative(name, 2) for name in coordinates}
+    return {
+        f"dynamics {name}": Call("-", (Name(rate), motion.trees[rate]))
+        for name, rate in accelerations.items()
+    }
+
+
+def _publish(system: System, chains: Iterable[tuple[str, ...]]) -> dict[str, tuple[str, ...]]:
+    return {
+        "states": tuple(system.state_names),
+        "controls": tuple(system.control_names),
+        "rates": tuple(name for chain in chains for name in chain[1:]),
+    }

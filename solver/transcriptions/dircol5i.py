@@ -1,0 +1,119 @@
+"""DirCol5i: quintic Hermite splines for implicit second-order systems (003, sections 8.4, 8.12)."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from solver.expressions import SX
+from solver.mesh.polynomials import from_powers
+from solver.transcriptions.base import Array, Collocation, Node, Point, Segment, Transcription
+
+_INNER = np.sqrt(5.0) / 10.0
+
+
+class DirCol5i(Transcription):
+    """Positions are quintic splines with two continuous derivatives, controls cubic with one.
+
+    The knots carry position, velocity and acceleration, control and control rate. The dynamics
+    hold, as they are written, at the four Gauss-Lobatto points of each segment, where integrals
+    are summed up too (8.15, 8.17); higher derivatives are those of the splines.
+    """
+
+    order = 6
+    error_order = 5
+    native = True
+    nodes = (
+        Node(0.0),
+        Node(0.5 - _INNER, state=False, control=False),
+        Node(0.5 + _INNER, state=False, control=False),
+        Node(1.0),
+    )
+    weights = (1 / 12, 5 / 12, 5 / 12, 1 / 12)
+
+    def collocate(self, segment: Segment) -> Collocation:
+        """The splines at the four points; the dynamics are constraints along the phase."""
+        a, *_, b = segment.points
+        h = segment.h
+        position = _quintic(*ca.vertsplit(a.x, _thirds(a.x)), *ca.vertsplit(b.x, _thirds(b.x)), h)
+        control = _cubic(*_halves(a.u), *_halves(b.u), h)
+        points = tuple(
+            _at(node, point, position, control, h)
+            for node, point in zip(self.nodes, segment.points, strict=True)
+        )
+        return Collocation(points, SX(0, 1), self.weighted(points))
+
+    def state_curve(self, x: Array, f: Array, h: Array) -> Array:
+        """The splines, their first and their second derivatives."""
+        del f
+        starts, ends = (np.split(x[:, node], 3, axis=1) for node in (0, 3))
+        powers = _quintic(*starts, *ends, h)
+        slopes = [
+            [p * k / h for k, p in enumerate(powers)][1:],
+            [p * k * (k - 1) / h**2 for k, p in enumerate(powers)][2:],
+        ]
+        rows = [powers, *([*some, *[np.zeros_like(powers[0])] * (6 - len(some))] for some in slopes)]
+        return from_powers(np.concatenate([np.stack(row, axis=1) for row in rows], axis=2))
+
+    def control_curve(self, u: Array, h: Array) -> Array:
+        """The splines and their first derivatives."""
+        starts, ends = (np.split(u[:, node], 2, axis=1) for node in (0, 3))
+        powers = _cubic(*starts, *ends, h)
+        rates = [*([p * k / h for k, p in enumerate(powers)][1:]), np.zeros_like(powers[0])]
+        return from_powers(
+            np.concatenate([np.stack(row, axis=1) for row in (powers, rates)], axis=2)
+        )
+
+
+def _at(node: Node, point: Point, position: Sequence[SX], control: Sequence[SX], h: SX) -> Point:
+    """The splines and their derivatives at a node."""
+    q, v, a, jerk, snap = (_derivative(position, k, node.fraction, h) for k in range(5))
+    u, rate, curvature = (_derivative(control, k, node.fraction, h) for k in range(3))
+    knot = node.state
+    return Point(
+        point.x if knot else ca.vertcat(q, v, a),
+        point.u if knot else ca.vertcat(u, rate),
+        point.z,
+        point.t,
+        ca.vertcat(jerk, snap, curvature),
+    )
+
+
+def _derivative(powers: Sequence[Any], order: int, s: float, h: Any) -> Any:
+    """A derivative in time of a polynomial in s = (t - start) / h, given by its coefficients."""
+    total = 0.0
+    for k in range(order, len(powers)):
+        factor = float(np.prod(np.arange(k - order + 1, k + 1)))
+        total = total + factor * s ** (k - order) * powers[k]
+    return total / h**order
+
+
+def _quintic(q0: Any, v0: Any, a0: Any, q1: Any, v1: Any, a1: Any, h: Any) -> list[Any]:
+    """Coefficients in s of the quintic with these values, slopes and curvatures (8.12)."""
+    c0, c1, c2 = q0, h * v0, h**2 * a0 / 2
+    gap, slope, bend = q1 - c0 - c1 - c2, h * v1 - c1 - 2 * c2, h**2 * a1 - 2 * c2
+    return [
+        c0,
+        c1,
+        c2,
+        10 * gap - 4 * slope + bend / 2,
+        -15 * gap + 7 * slope - bend,
+        6 * gap - 3 * slope + bend / 2,
+    ]
+
+
+def _cubic(u0: Any, r0: Any, u1: Any, r1: Any, h: Any) -> list[Any]:
+    """Coefficients in s of the cubic with these values and slopes."""
+    rise = u1 - u0
+    return [u0, h * r0, 3 * rise - h * (2 * r0 + r1), h * (r0 + r1) - 2 * rise]
+
+
+def _thirds(x: SX) -> list[int]:
+    count = x.numel() // 3
+    return [0, count, 2 * count, 3 * count]
+
+
+def _halves(u: SX) -> tuple[SX, SX]:
+    count = u.numel() // 2
+    return u[:count], u[count:]
