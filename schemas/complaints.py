@@ -17,7 +17,7 @@ from schemas.phases import Phase
 from schemas.pointers import Part, pointer
 from schemas.problem import Problem
 from schemas.suggest import did_you_mean
-from schemas.systems import Ode
+from schemas.systems import SYSTEMS
 
 Schema = dict[str, Any]
 Writer = Callable[[ErrorDetails, list[Part], Schema], Issue]
@@ -40,8 +40,13 @@ _GIVEN: dict[type, str] = {
     type(None): "null",
 }
 _MAXIMIZE = 'to maximize, minimize the negative: {"minimize": "-(...)"}'
+_INLINED = ("from_job", "library")
+_EDGE = (
+    "a service and the footfall command put in what it names before the problem is read; "
+    "here, write it out"
+)
 _HOMES: tuple[tuple[type[Posted], str], ...] = (
-    (Ode, "a phase's 'system'"),
+    *((system, "a phase's 'system'") for system in SYSTEMS),
     (Phase, "a phase, an entry of 'phases'"),
     (Problem, "the problem itself"),
 )
@@ -113,6 +118,9 @@ def _given(error: ErrorDetails) -> str:
 
 def _kind(error: ErrorDetails, parts: list[Part], schema: Schema) -> Issue:
     options = list(schema.get("discriminator", {}).get("mapping", {}))
+    for word in _INLINED:
+        if word in (error["input"].get("kind"), *error["input"]):
+            return Issue(pointer(*parts), f"{quoted(word)} is a name that is not known here", _EDGE)
     return _choice(error["input"].get("kind"), [*parts, "kind"], options)
 
 
@@ -134,9 +142,12 @@ def _choice(given: Any, parts: list[Part], options: list[str]) -> Issue:
 
 
 def _pattern(error: ErrorDetails, parts: list[Part], _: Schema) -> Issue:
-    if not error["ctx"]["pattern"].startswith("^[A-Za-z_]"):
+    pattern = error["ctx"]["pattern"]
+    if "[A-Za-z_]" not in pattern:
         return Issue(pointer(*parts), "expected one line of text, without control characters")
     hint = "a letter or _, then letters, digits and _, 64 at the most"
+    if "(" in str(error["input"]) and "d{1,4}" in pattern:
+        hint = "derivatives are those of one name, d(x), dd(x), ddd(x) and dddd(x)"
     return Issue(pointer(*parts), f"{quoted(error['input'])} is not a name", hint)
 
 
@@ -172,15 +183,23 @@ def _locate(error: ErrorDetails) -> tuple[list[Part], Schema]:
     parts: list[Part] = []
     schema = _resolve(_published())
     for part in error["loc"]:
-        kinds = schema.get("discriminator", {}).get("mapping", {})
-        if part in kinds:
-            schema = _resolve({"$ref": kinds[part]})
+        tagged = _tags(schema)
+        if part in tagged:
+            schema = _resolve(tagged[part])
             continue
         if part == "[key]" and marked:
             continue
         parts.append(part)
         schema = _resolve(_below(schema, part)) or schema
     return parts, schema
+
+
+def _tags(schema: Schema) -> dict[Part, Schema]:
+    """What stands for the members of a union in a location, each with its schema."""
+    if "discriminator" in schema:
+        return {kind: {"$ref": ref} for kind, ref in schema["discriminator"]["mapping"].items()}
+    members = schema.get("oneOf", [])
+    return {one.get("const") or one["$ref"].rsplit("/", 1)[1]: one for one in members}
 
 
 def _below(schema: Schema, part: Part) -> Schema:

@@ -5,6 +5,7 @@
     +-- InvalidModel        only the model could tell (found by the worker)
     +-- EngineFault         the engine itself failed; a bug or a dead solver
     +-- UnknownJob          no such job, or somebody else's
+    +-- UnknownSweep        no such sweep, or somebody else's
     +-- ResultNotReady      the job has not ended
     +-- NoResult            the job ended and will never have a result
     +-- ResultExpired       the result was there and has expired
@@ -69,6 +70,10 @@ class UnknownJob(FootfallError):
     """No such job for this owner."""
 
 
+class UnknownSweep(FootfallError):
+    """No such sweep for this owner, or no such point of it."""
+
+
 class ResultNotReady(FootfallError):
     """The job is still queued or running and has no iterate yet."""
 
@@ -120,6 +125,7 @@ PROBLEM_TYPES: dict[type[FootfallError], ProblemType] = {
     InvalidModel: ProblemType("invalid-model", 422, "The model cannot be built or evaluated"),
     EngineFault: ProblemType("engine-fault", 500, "The engine failed"),
     UnknownJob: ProblemType("unknown-job", 404, "There is no such job"),
+    UnknownSweep: ProblemType("unknown-sweep", 404, "There is no such sweep"),
     ResultNotReady: ProblemType("result-not-ready", 409, "The result is not ready", 1),
     NoResult: ProblemType("no-result", 404, "The job ended without a result"),
     ResultExpired: ProblemType("result-expired", 410, "The result has expired"),

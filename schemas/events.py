@@ -39,6 +39,17 @@ class MeshSolved(Strict):
     seconds: float
 
 
+class PointEnded(Strict):
+    """One point of a sweep has ended. ``index`` counts from 0 over the whole sweep."""
+
+    type: Literal["point"] = "point"
+    index: int
+    status: str
+    solution_status: str | None = None
+    objective: float | None = None
+    seconds: float = 0.0
+
+
 class StateChanged(Strict):
     """The job moved to another state. ``terminal`` ends the stream."""
 
@@ -50,7 +61,8 @@ class StateChanged(Strict):
 
 
 Event = Annotated[
-    StageStarted | NlpIteration | MeshSolved | StateChanged, Field(discriminator="type")
+    StageStarted | NlpIteration | MeshSolved | PointEnded | StateChanged,
+    Field(discriminator="type"),
 ]
 EngineEvent = StageStarted | NlpIteration | MeshSolved
 event_adapter: TypeAdapter[Event] = TypeAdapter(Event)

@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import FailFast, Field
 
-from schemas.base import Identifier, Posted, Series
+from schemas.base import AlsoNamed, Identifier, Posted, Series
 from schemas.results import CurveGroup
 from schemas.values import Scalar
 
@@ -73,4 +73,5 @@ class SolutionGuess(Posted):
 Guess = Annotated[
     LinearGuess | ConstantGuess | PointsGuess | RandomGuess | SolutionGuess,
     Field(discriminator="kind"),
+    AlsoNamed((("from_job", "string"),), "The solution of an own, finished job, by its id."),
 ]

@@ -43,6 +43,13 @@ MOVES: dict[JobStatus, frozenset[JobStatus]] = {
 }
 
 
+class JobKind(StrEnum):
+    """What a job does: solve one problem, or some points of a sweep in a row."""
+
+    SOLVE = "solve"
+    SWEEP_CHUNK = "sweep_chunk"
+
+
 class JobIssue(Strict):
     """One thing wrong with the problem, as in a 422 reply."""
 
@@ -88,6 +95,7 @@ class Job(Strict):
 
     id: str
     name: str
+    kind: JobKind = JobKind.SOLVE
     status: JobStatus
     solution_status: str | None = None
     message: str = ""

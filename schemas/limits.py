@@ -11,6 +11,10 @@ class ModelLimits:
     static: int = 100
     stages: int = 20
     multistart: int = 200
+    sweep: int = 1000
+    """Points of one sweep."""
+    sweep_values: int = 2_000_000
+    """Points of a sweep times the values of its problem."""
     states: int = 200
     controls: int = 200
     parameters: int = 1000

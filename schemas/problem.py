@@ -1,8 +1,8 @@
 """A trajectory-optimization problem: the document that clients post."""
 
-from typing import Any, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 from pydantic_core import PydanticCustomError
 
 from schemas.base import Identifier, Label, Posted
@@ -86,6 +86,10 @@ class Smoothing(Posted):
         return self
 
 
+def _treatment(raw: Any) -> str:
+    return "slack" if isinstance(raw, str) else "Smoothing"
+
+
 class Nonsmooth(Posted):
     """How ``abs``, ``min`` and ``max`` in objectives are treated (003, section 7.10).
 
@@ -93,7 +97,10 @@ class Nonsmooth(Posted):
     them as they are.
     """
 
-    abs: Literal["slack"] | Smoothing
+    abs: Annotated[
+        Annotated[Literal["slack"], Tag("slack")] | Annotated[Smoothing, Tag("Smoothing")],
+        Discriminator(_treatment),
+    ]
 
 
 class Static(Posted):
@@ -124,7 +131,7 @@ class Problem(Posted):
     linkages: list[Constraint] = Field(
         default_factory=list,
         max_length=MODEL_LIMITS.constraints,
-        description="Constraints over the ends of several phases: stance.final.x, flight.initial.x.",
+        description="Constraints over the ends of phases: stance.final.x, flight.initial.x.",
     )
     objective: Objective | None = None
     method: Method = Field(default_factory=lambda: HermiteSimpson(kind="hermite_simpson"))

@@ -1,13 +1,14 @@
 """Reading a problem: JSON, then its shape, then its meaning; and writing it canonically."""
 
 import hashlib
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
 from itertools import islice
 from typing import Any
 
 import orjson
 from pydantic import ValidationError
 
+from schemas import stages
 from schemas.checks import check
 from schemas.complaints import issue_of
 from schemas.errors import BadProblem, Issue
@@ -20,20 +21,38 @@ _ORDERED = frozenset({"parameters", "define"})
 """Objects whose order has a meaning: an entry may use those before it."""
 
 
-def read_problem(data: bytes | str | dict[str, Any]) -> Problem:
+Document = dict[str, Any]
+
+
+def read_problem(
+    data: bytes | str | Document, inline: Callable[[Document], Document] | None = None
+) -> Problem:
     """Read and check a problem.
 
     Parameters
     ----------
     data
         JSON, as bytes in UTF-8 or as text, or what ``json.loads`` made of it.
+    inline
+        Puts in what the document only names (``schemas.inlining``); the same object if nothing.
 
     Raises
     ------
     BadProblem
-        With every issue found by the first stage that found any: JSON, shape, meaning. Nothing
-        else is raised, whatever the data; at most `MAX_ISSUES` issues are kept.
+        With every issue found by the first step that found any: JSON, shape, meaning, stages.
+        Nothing else is raised, whatever the data; at most `MAX_ISSUES` issues are kept.
     """
+    document = read_document(data)
+    if inline is not None:
+        document = read_inlined(document, inline)
+    problem = _checked(document)
+    _refuse(stages.out_of_place(problem))
+    _refuse(_of_stages(problem))
+    return problem
+
+
+def read_document(data: bytes | str | Document) -> Document:
+    """The JSON object, without NaN, repeated keys or too much of anything. Raises BadProblem."""
     document: Any = data
     if isinstance(data, bytes | str):
         document, unreadable = decode(data)
@@ -42,13 +61,15 @@ def read_problem(data: bytes | str | dict[str, Any]) -> Problem:
     _refuse(faults(document))
     if not isinstance(document, dict):
         raise BadProblem([Issue("", "a problem is a JSON object, {...}")])
-    try:
-        problem = Problem.model_validate(document)
-    except ValidationError as error:
-        details = error.errors(include_url=False)
-        raise BadProblem([issue_of(detail) for detail in details[:MAX_ISSUES]]) from None
-    _refuse(check(problem))
-    return problem
+    return document
+
+
+def read_inlined(document: Document, inline: Callable[[Document], Document]) -> Document:
+    """The document with what it names put in; still not too much of anything. BadProblem."""
+    whole = inline(document)
+    if whole is not document:
+        _refuse(faults(whole))
+    return whole
 
 
 def canonical(problem: Problem) -> bytes:
@@ -62,6 +83,27 @@ def canonical(problem: Problem) -> bytes:
 def spec_sha256(problem: Problem) -> str:
     """The hash of the canonical problem, 64 hexadecimal digits."""
     return hashlib.sha256(canonical(problem)).hexdigest()
+
+
+def _checked(document: dict[str, Any]) -> Problem:
+    """The problem of good shape and meaning, its stages aside."""
+    try:
+        problem = Problem.model_validate(document)
+    except ValidationError as error:
+        details = error.errors(include_url=False)
+        raise BadProblem([issue_of(detail) for detail in details[:MAX_ISSUES]]) from None
+    _refuse(check(problem))
+    return problem
+
+
+def _of_stages(problem: Problem) -> Iterator[Issue]:
+    """What is wrong with the problems that the stages make, up to the first that is wrong."""
+    for index, patch in enumerate(problem.stages):
+        try:
+            _checked(stages.stage_document(problem, index))
+        except BadProblem as bad:
+            yield from (stages.blamed(issue, index, patch) for issue in bad.issues)
+            return
 
 
 def _refuse(issues: Iterable[Issue]) -> None:

@@ -10,7 +10,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from schemas.base import Identifier, Posted
+from schemas.base import AlsoNamed, Identifier, Posted
 from schemas.expressions import Expression
 from schemas.limits import MODEL_LIMITS
 from schemas.pointers import Part
@@ -131,5 +131,13 @@ class ClosedForm(Posted):
             yield ("states", name), f"state {name}", expression
 
 
-System = Annotated[Ode | SecondOrder | ClosedForm, Field(discriminator="kind")]
+System = Annotated[
+    Ode | SecondOrder | ClosedForm,
+    Field(discriminator="kind"),
+    AlsoNamed(
+        (("kind", "=library"), ("name", "string"), ("parameters", "object")),
+        "The system of the first phase of an example, perhaps with other parameters.",
+        optional=("parameters",),
+    ),
+]
 SYSTEMS: tuple[type[Posted], ...] = (Ode, SecondOrder, ClosedForm)

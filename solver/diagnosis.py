@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from schemas.errors import InvalidModel, Issue
 from schemas.expressions import Expression
 from schemas.phases import Phase as PhaseSpec
+from schemas.pointers import pointer
 from schemas.problem import Problem
 from solver.model import Model, Phase
 from solver.nlp.program import Program, RowLabel
@@ -105,13 +106,13 @@ def _by_rows(
     labels = [label for label, broken in zip(program.labels(), bad, strict=True) if broken]
     pointers = dict.fromkeys(_pointer(problem, label) for label in labels)
     message = f"has no finite {what} at the initial guess"
-    return [Issue(pointer, message, hint) for pointer in pointers or ["/objective/minimize"]]
+    return [Issue(place, message, hint) for place in pointers or ["/objective/minimize"]]
 
 
 def _pointer(problem: Problem, label: RowLabel) -> str:
     """Where the expression behind a row stands."""
     for index, phase in enumerate(problem.phases):
-        pointers = {f"defect {name}": f"system/derivatives/{name}" for name in phase.system.states}
+        pointers = _equations(phase)
         pointers |= {f"integral {name}": f"integrals/{name}" for name in phase.integrals}
         for field, rows in (("path", phase.path), ("boundary", phase.boundary)):
             pointers |= {
@@ -123,12 +124,25 @@ def _pointer(problem: Problem, label: RowLabel) -> str:
     return "/guess"
 
 
+def _equations(phase: PhaseSpec) -> dict[str, str]:
+    """The rows that come of each equation of motion, and where it stands."""
+    pointers = {}
+    for place, _, _ in phase.system.equations():
+        field, name = place
+        where = f"system/{field}/{name}"
+        labels = [f"defect {name}"]
+        if field in ("accelerations", "residual"):
+            labels = [f"defect d({name})", f"dynamics {name}"]
+        pointers |= dict.fromkeys(labels, where)
+    return pointers
+
+
 def _expressions(phase: PhaseSpec) -> Iterator[tuple[str, Expression]]:
     system = phase.system
     for name, expression in system.define.items():
         yield f"/system/define/{name}", expression
-    for name in system.states:
-        yield f"/system/derivatives/{name}", system.derivatives[name]
+    for place, _, expression in system.equations():
+        yield "/system" + pointer(*place), expression
     for name, expression in phase.integrals.items():
         yield f"/integrals/{name}", expression
     for index, row in enumerate(phase.path):

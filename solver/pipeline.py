@@ -1,20 +1,15 @@
-"""The whole story on one page: problem -> model -> meshes -> certificate -> solution."""
+"""The whole story on one page: problem -> starts -> stages -> meshes -> certificate -> solution."""
 
 import math
 import time
 from collections.abc import Callable
-from dataclasses import replace
 
-from schemas.events import EngineEvent, MeshSolved
+from schemas.events import EngineEvent
 from schemas.problem import Problem
-from schemas.results import Solution, finite
-from solver.certificate import CHECKS, JUDGED, certify
-from solver.prepare import prepare
-from solver.refinement.subdivide import refine
+from schemas.results import Solution
+from solver.campaign import solve_guesses, solve_stages
+from solver.once import solve_once
 from solver.run import Run
-from solver.solution.choose import choose
-from solver.solution.conclude import conclude, snapshot
-from solver.solve_mesh import SolvedMesh, Start, solve_mesh
 
 
 def _ignore(_: object) -> None:
@@ -62,51 +57,11 @@ def solve(
     """
     limit = time.monotonic() + problem.limits.seconds
     run = Run(on_event, min(limit, math.inf if deadline is None else deadline), should_stop)
-    with run.stage("build"):
-        model, setting = prepare(problem)
 
-    solved: list[SolvedMesh] = []
+    def once(problem: Problem, run: Run) -> Solution:
+        return solve_once(problem, run, on_snapshot).solution
 
-    def publish(*unfinished: SolvedMesh) -> None:
-        on_snapshot(snapshot(problem, [*solved, *unfinished], run))
+    def row(problem: Problem, run: Run) -> Solution:
+        return solve_stages(problem, once, run)
 
-    start: Start | None = Start(0, setting, warm=False)
-    while start is not None:
-        solved.append(solve_mesh(problem, model, start, run, publish))
-        on_event(_mesh_event(problem, solved))
-        publish()
-        start = _next(problem, start, solved[-1])
-
-    with run.stage("certify"):
-        chosen = choose(solved)
-        checks = JUDGED if run.stopped() else CHECKS
-        certificate = certify(problem, chosen.phases, finite(chosen.objective), checks, chosen.statics)
-    return conclude(problem, solved, certificate, run)
-
-
-def _next(problem: Problem, start: Start, last: SolvedMesh) -> Start | None:
-    """The next mesh, or None where this one is the last."""
-    settings = problem.refinement
-    if settings is None or not last.optimal or last.max_error <= settings.tolerance:
-        return None
-    if start.number + 1 >= settings.max_iterations:
-        return None
-    meshes = refine(start.setting.meshes, last.errors, start.setting.transcriptions[0].error_order, settings)
-    if meshes is None:
-        return None
-    values = list(last.statics.values())
-    setting = replace(start.setting, meshes=meshes, guesses=last.trajectories, statics=values)
-    return Start(start.number + 1, setting, warm=True)
-
-
-def _mesh_event(problem: Problem, solved: list[SolvedMesh]) -> MeshSolved:
-    last = solved[-1]
-    return MeshSolved(
-        mesh=len(solved) - 1,
-        segments=sum(len(errors) for errors in last.errors),
-        max_error=finite(last.max_error),
-        tolerance=problem.refinement.tolerance if problem.refinement else None,
-        objective=finite(last.objective),
-        nlp_iterations=last.outcome.iterations,
-        seconds=last.seconds,
-    )
+    return solve_guesses(problem, row, run)

@@ -84,6 +84,10 @@ class Run:
         """Whether the solve has been asked to end, or is out of time."""
         return self.should_stop() or time.monotonic() >= self.deadline
 
+    def seconds(self) -> float:
+        """Since the start."""
+        return time.monotonic() - self.started
+
     def timing(self) -> Timing:
         """Seconds of each stage so far."""
         stages: tuple[Stage, ...] = ("build", "solve", "refine", "certify")

@@ -1,8 +1,8 @@
 """One mesh: transcribe, assemble, solve, read out, estimate the error."""
 
 import time
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,16 +13,25 @@ from schemas.problem import Problem
 from schemas.results import PhaseResult
 from solver.backends import NlpStatus, Outcome, Watch, make_backend
 from solver.diagnosis import check_start
-from solver.lowering import lower
+from solver.lowering.used import used_integrals
 from solver.model import Model
 from solver.nlp.redundancy import Redundancy, find_redundancy
 from solver.nlp.residuals import RowResidual, ranked_residuals
 from solver.nlp.scaling import Scaling, typical_scaling
+from solver.nlp.stationarity import stationary
 from solver.nlp.task import NlpTask
 from solver.refinement.error import segment_errors
+from solver.refinement.integrals import integral_errors
 from solver.run import Run
 from solver.trajectory import Trajectory
-from solver.transcribe import Setting, Transcribed, extract, transcribe, with_costates
+from solver.transcribe import (
+    Extracted,
+    Setting,
+    Transcribed,
+    extract,
+    transcribe,
+    with_costates,
+)
 
 Array = NDArray[np.float64]
 
@@ -38,7 +47,10 @@ class Start:
 
 @dataclass(frozen=True, slots=True)
 class SolvedMesh:
-    """What solving one mesh gave. ``errors`` (segments,) per phase."""
+    """What solving one mesh gave.
+
+    ``errors`` and ``integral_errors`` (segments,) per phase, ``switches`` in seconds.
+    """
 
     setting: Setting
     outcome: Outcome
@@ -46,11 +58,13 @@ class SolvedMesh:
     phases: list[PhaseResult]
     statics: dict[str, float]
     errors: list[Array]
+    integral_errors: list[Array]
     residuals: list[RowResidual]
     redundancy: Redundancy
     variables: int
     rows: int
     seconds: float
+    switches: Sequence[float] = ()
 
     @property
     def optimal(self) -> bool:
@@ -61,6 +75,11 @@ class SolvedMesh:
     def objective(self) -> float:
         """The objective at the outcome's point."""
         return self.outcome.point.objective
+
+    @property
+    def integral_error(self) -> float:
+        """The largest sum over a phase of how far the integrals' shares are off."""
+        return max(float(np.sum(errors)) for errors in self.integral_errors)
 
     @property
     def max_error(self) -> float:
@@ -85,18 +104,22 @@ class _Built:
         """The trajectories at a point of the NLP, their errors, and what is violated there."""
         program, scaling = self.transcribed.program, self.scaling
         w, rows = outcome.point.z * scaling.columns, outcome.point.rows * scaling.rows
-        trajectories, phases = extract(self.transcribed, w)
+        extracted = extract(self.transcribed, w)
+        phases = [phase.result for phase in extracted]
         if outcome.row_multipliers is not None and outcome.status is NlpStatus.OPTIMAL:
             phases = with_costates(self.transcribed, outcome.row_multipliers / scaling.rows, phases)
-        names = [static.name for static in self.model.statics]
-        values = [float(w[place]) for place in self.transcribed.statics]
+        statics = {
+            static.name: float(w[place])
+            for static, place in zip(self.model.statics, self.transcribed.statics, strict=True)
+        }
         return SolvedMesh(
             setting=self.setting,
             outcome=outcome,
-            trajectories=trajectories,
+            trajectories=[phase.trajectory for phase in extracted],
             phases=phases,
-            statics=dict(zip(names, values, strict=True)),
-            errors=self._errors(phases, dict(zip(names, values, strict=True))),
+            statics=statics,
+            errors=self._errors(phases, statics),
+            integral_errors=self._integral_errors(extracted, statics),
             residuals=ranked_residuals(program, scaling, w, rows),
             redundancy=self.redundancy,
             variables=program.variables.size,
@@ -106,11 +129,28 @@ class _Built:
 
     def _errors(self, phases: list[PhaseResult], statics: dict[str, float]) -> list[Array]:
         """The error of each segment: the largest of its pieces."""
-        parts = zip(lower(self.problem), phases, self.setting.transcriptions, strict=True)
+        parts = zip(self.model.phases, phases, self.setting.transcriptions, strict=True)
         return [
-            segment_errors(form, result, statics).reshape(-1, method.pieces).max(axis=1)
-            for form, result, method in parts
+            segment_errors(phase.chain, result, statics).reshape(-1, method.pieces).max(axis=1)
+            for phase, result, method in parts
         ]
+
+
+    def _integral_errors(
+        self, extracted: Sequence[Extracted], statics: dict[str, float]
+    ) -> list[Array]:
+        """How far the sums of each segment are off, of the integrals that matter."""
+        errors = []
+        for spec, phase, one in zip(
+            self.problem.phases, self.model.phases, extracted, strict=True
+        ):
+            which = used_integrals(self.problem, spec)
+            rows = [i for i, name in enumerate(spec.integrals) if name in which]
+            trees = [spec.integrals[name].tree for name in spec.integrals if name in which]
+            errors.append(
+                integral_errors(phase.chain, trees, one.result, one.sums[rows], statics)
+            )
+        return errors
 
 
 def solve_mesh(
@@ -173,12 +213,31 @@ def _solve(
     backend, settings = make_backend(problem.solver.backend), problem.solver
     if refusal := backend.refusal(task):
         raise InvalidModel([Issue("/solver/backend", refusal)])
+
+    def attempt(*, warm: bool) -> Outcome:
+        outcome = backend.solve(task, settings, watch(), warm=warm)
+        return _judged(task, outcome, settings.tolerance)
+
     if not warm:
-        return backend.solve(task, settings, watch(), warm=False)
-    outcome = backend.solve(task, settings, watch(), warm=True)
+        return attempt(warm=False)
+    outcome = attempt(warm=True)
     if outcome.status in (NlpStatus.OPTIMAL, NlpStatus.STOPPED, NlpStatus.TIME_LIMIT):
         return outcome
     announce("again, from a cold start")
-    again = backend.solve(task, settings, watch(), warm=False)
+    again = attempt(warm=False)
     settled = again.status is NlpStatus.OPTIMAL or outcome.status is not NlpStatus.ACCEPTABLE
     return again if settled else outcome
+
+
+_NEARLY = (NlpStatus.ACCEPTABLE, NlpStatus.DIVERGED)
+
+
+def _judged(task: NlpTask, outcome: Outcome, tolerance: float) -> Outcome:
+    """The outcome, optimal where only round-off kept the solver from saying so."""
+    rows, bounds = outcome.row_multipliers, outcome.bound_multipliers
+    if outcome.status not in _NEARLY or rows is None or bounds is None:
+        return outcome
+    if outcome.point.violation > tolerance:
+        return outcome
+    arrived = stationary(task, outcome.point.z, rows, bounds, tolerance)
+    return replace(outcome, status=NlpStatus.OPTIMAL) if arrived else outcome

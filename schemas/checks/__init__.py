@@ -6,7 +6,19 @@ file and one entry.
 
 from collections.abc import Callable, Iterator
 
-from schemas.checks import derivatives, guesses, limits, names, references, sizes, times
+from schemas.checks import (
+    chains,
+    closed_forms,
+    equations,
+    guesses,
+    limits,
+    methods,
+    names,
+    nonsmooth,
+    references,
+    sizes,
+    times,
+)
 from schemas.errors import Issue
 from schemas.problem import Problem
 
@@ -14,11 +26,15 @@ Check = Callable[[Problem], Iterator[Issue]]
 
 CHECKS: tuple[Check, ...] = (
     names.check,
-    derivatives.check,
+    equations.check,
     references.check,
+    chains.check,
+    closed_forms.check,
     limits.check,
     times.check,
+    methods.check,
     guesses.check,
+    nonsmooth.check,
 )
 
 

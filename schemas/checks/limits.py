@@ -1,25 +1,41 @@
-"""Bounds, ends and constraints: over declared names, evaluable, and possible together."""
+"""Bounds, ends, constraints and statics: over declared names, evaluable, possible together."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from schemas.checks.constants import Constants, Interval
 from schemas.checks.places import variables
 from schemas.errors import Issue
-from schemas.phases import Phase
+from schemas.expressions import derivative, split
+from schemas.phases import Constraint, Phase
 from schemas.pointers import Part, pointer
 from schemas.problem import Problem
 from schemas.suggest import did_you_mean
 
 
 def check(problem: Problem) -> Iterator[Issue]:
-    """Parameters, bounds, initial and final values, limits of constraints."""
+    """Parameters, bounds, initial and final values, limits of constraints, statics."""
+    alone = Constants()
+    yield from _statics(problem, alone)
     for index, phase in enumerate(problem.phases):
         root = ("phases", index)
         constants = Constants.of(phase, root)
         yield from constants.drain()
         yield from _bounds(phase, root, constants)
-        yield from _constraints(phase, root, constants)
+        yield from _constraints(phase.path, (*root, "path"), constants)
+        yield from _constraints(phase.boundary, (*root, "boundary"), constants)
+    yield from _constraints(problem.linkages, ("linkages",), alone)
+
+
+def _statics(problem: Problem, constants: Constants) -> Iterator[Issue]:
+    for name, static in problem.static.items():
+        interval = constants.interval(static.bounds, ("static", name, "bounds"))
+        if static.guess is not None:
+            parts = ("static", name, "guess")
+            guess = constants.value(static.guess, parts)
+            if guess is not None and interval is not None:
+                yield from _outside((guess, guess), interval, parts)
+        yield from constants.drain()
 
 
 def _bounds(phase: Phase, root: tuple[Part, ...], constants: Constants) -> Iterator[Issue]:
@@ -28,7 +44,7 @@ def _bounds(phase: Phase, root: tuple[Part, ...], constants: Constants) -> Itera
     for field in ("bounds", "initial", "final"):
         for name, bound in getattr(phase, field).items():
             parts = (*root, field, name)
-            if name not in known:
+            if not is_variable(name, known):
                 yield not_a_variable(name, known, parts)
                 continue
             interval = constants.interval(bound, parts)
@@ -41,10 +57,21 @@ def _bounds(phase: Phase, root: tuple[Part, ...], constants: Constants) -> Itera
                 yield from _outside(interval, along.get(name), parts)
 
 
-def not_a_variable(name: str, known: list[str], parts: tuple[Part, ...]) -> Issue:
-    """The issue of a name that should be a state or a control."""
-    hint = "'time' bounds the time" if name == "t" else did_you_mean(name, known)
-    some = "the states and controls are " + ", ".join(known[:12])
+def is_variable(name: str, known: Mapping[str, int]) -> bool:
+    """Whether the name is one of the variables, or a derivative of one that exists."""
+    _, order, base = split(name)
+    return known.get(base, -1) >= order
+
+
+def not_a_variable(name: str, known: Mapping[str, int], parts: tuple[Part, ...]) -> Issue:
+    """The issue of a name that should be a state or a control, or a derivative of one."""
+    _, order, base = split(name)
+    hint = did_you_mean(name, [derivative(word, order) for word in known])
+    if name == "t":
+        hint = "'time' bounds the time"
+    elif base in known:
+        hint = "a motion in closed form has no derivatives"
+    some = "the states and controls are " + ", ".join(list(known)[:12])
     return Issue(pointer(*parts), f"'{name}' is not a state or a control", hint or some)
 
 
@@ -53,7 +80,7 @@ def _outside(end: Interval, along: Interval | None, parts: tuple[Part, ...]) -> 
         yield Issue(
             pointer(*parts),
             f"{_shown(end)} lies outside of the bounds {_shown(along)}",
-            "widen 'bounds', or move the end into them",
+            "widen 'bounds', or move it into them",
         )
 
 
@@ -65,14 +92,15 @@ def _shown(interval: Interval) -> str:
     return "[" + ", ".join(sides) + "]"
 
 
-def _constraints(phase: Phase, root: tuple[Part, ...], constants: Constants) -> Iterator[Issue]:
-    for field in ("path", "boundary"):
-        for index, constraint in enumerate(getattr(phase, field)):
-            parts = (*root, field, index)
-            lower, upper = constraint.lower, constraint.upper
-            constants.ordered(
-                -math.inf if lower is None else constants.value(lower, (*parts, "lower")),
-                math.inf if upper is None else constants.value(upper, (*parts, "upper")),
-                parts,
-            )
-            yield from constants.drain()
+def _constraints(
+    constraints: list[Constraint], root: tuple[Part, ...], constants: Constants
+) -> Iterator[Issue]:
+    for index, constraint in enumerate(constraints):
+        parts = (*root, index)
+        lower, upper = constraint.lower, constraint.upper
+        constants.ordered(
+            -math.inf if lower is None else constants.value(lower, (*parts, "lower")),
+            math.inf if upper is None else constants.value(upper, (*parts, "upper")),
+            parts,
+        )
+        yield from constants.drain()

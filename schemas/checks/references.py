@@ -4,12 +4,14 @@ from collections.abc import Iterator
 
 from schemas.checks.places import Place, places, variables
 from schemas.errors import Issue
-from schemas.expressions import Name, names_in
+from schemas.expressions import Name, derivative, names_in, split
 from schemas.expressions.errors import quoted
+from schemas.expressions.names import DERIVATIVES
 from schemas.phases import Phase
 from schemas.pointers import pointer
 from schemas.problem import Problem
 from schemas.suggest import did_you_mean
+from schemas.systems import ClosedForm
 
 _SHOWN = 12
 _TIMES = frozenset({"time", "t_final", "tfinal", "tf", "t_f", "T"})
@@ -32,31 +34,56 @@ def check(problem: Problem) -> Iterator[Issue]:
 
 
 def _hint(name: str, place: Place) -> str:
-    elsewhere = _elsewhere(name, place.phase, along="t" in place.visible) if place.phase else ""
-    if elsewhere:
+    elsewhere = _elsewhere(name, place, place.phase) if place.phase else ""
+    if elsewhere or (elsewhere := _habit(name, place)):
         return elsewhere
-    if name.lower() in ("nan", "inf", "infinity"):
-        return "infinities have no name; leave an open limit out, or write null"
-    if name in _TIMES:
-        along = "t" in place.visible
-        return "the time is t" if along else "the final time is final.t, the time taken duration"
-    some = sorted(place.visible, key=lambda word: (word.count("."), word))
+    _, order, _ = split(name)
+    orders = place.visible.orders
+    some = [derivative(word, order) for word in place.visible.words if orders[word] >= order]
     near = did_you_mean(name, some)
     if near:
         return near
     return "known here: " + ", ".join(some[:_SHOWN]) + (", ..." if len(some) > _SHOWN else "")
 
 
-def _elsewhere(name: str, phase: Phase, *, along: bool) -> str:
-    """Why a name that is declared is not visible here."""
-    if along and name in phase.integrals:
-        return "an integral is known at the end only: in 'boundary' and in the objective"
-    if along and (name == "duration" or name.startswith(("initial.", "final."))):
-        return "the ends of a phase are known in 'boundary' and in the objective only"
-    if name in phase.system.define:
-        if along:
-            return f"'{name}' is defined further down; an intermediate may use those before it"
-        return "intermediates are known along the phase only; write the formula out"
-    if not along and (name == "t" or name in variables(phase)):
-        return f"write initial.{name} or final.{name}"
+def _habit(name: str, place: Place) -> str:
+    """What to write for names that mean something elsewhere."""
+    prefix, order, base = split(name)
+    if order and prefix + base in place.visible:
+        return f"'{prefix}{base}' has no derivatives"
+    if base in DERIVATIVES and not order:
+        return f"write {name}(x) for a derivative of x"
+    if name.lower() in ("nan", "inf", "infinity"):
+        return "infinities have no name; leave an open limit out, or write null"
+    if name in _TIMES:
+        along = "t" in place.visible
+        return "the time is t" if along else "the final time is final.t, the time taken duration"
     return ""
+
+
+def _elsewhere(name: str, place: Place, phase: Phase) -> str:
+    """Why a name that is declared is not visible here."""
+    prefix, order, base = split(name)
+    varies = base in phase.system.define or base in variables(phase)
+    if order and varies and isinstance(phase.system, ClosedForm):
+        return "a motion in closed form has no derivatives; write the formula of the rate"
+    if "t" in place.visible:
+        return _along(name, place, phase)
+    inside = not prefix and (name == "t" or varies)
+    return f"write initial.{name} or final.{name}" if inside else ""
+
+
+def _along(name: str, place: Place, phase: Phase) -> str:
+    prefix, _, base = split(name)
+    if name == "duration" or prefix in ("initial.", "final."):
+        return "the ends of a phase are known in 'boundary' and in the objective only"
+    if prefix or base in place.visible:
+        return ""
+    if base in phase.integrals:
+        return "an integral is known at the end only: in 'boundary' and in the objective"
+    if base in phase.system.define:
+        return f"'{base}' is defined further down; an intermediate may use those before it"
+    closed = base in variables(phase)
+    return (
+        f"a closed form starts from the start of its phase: write initial.{base}" if closed else ""
+    )

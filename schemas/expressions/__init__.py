@@ -9,6 +9,7 @@ from schemas.expressions.constant import constant
 from schemas.expressions.errors import ExpressionError
 from schemas.expressions.field import Expression
 from schemas.expressions.fold import fold
+from schemas.expressions.names import derivative, split
 from schemas.expressions.parser import parse
 from schemas.expressions.smoothness import warnings_in
 from schemas.expressions.tree import FUNCTIONS, OPERATORS, Call, Name, Number, Tree, names_in, walk
@@ -23,9 +24,11 @@ __all__ = [
     "Number",
     "Tree",
     "constant",
+    "derivative",
     "fold",
     "names_in",
     "parse",
+    "split",
     "walk",
     "warnings_in",
 ]

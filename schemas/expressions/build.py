@@ -27,7 +27,6 @@ _OTHER_NAMES = {
         ("integral", "integrate"), "it into the phase's 'integrals', under a name to be used here"
     ),
 }
-_DERIVATIVES = frozenset({"d", "dd", "ddd", "dddd"})
 
 
 def operation(operator: str, arguments: Sequence[Tree], column: int) -> Tree:
@@ -90,12 +89,6 @@ def _check_exponent(exponent: Tree, column: int) -> None:
 
 
 def _unknown_function(name: str, column: int) -> ExpressionError:
-    if name in _DERIVATIVES:
-        return ExpressionError(
-            f"derivatives such as {name}(x) are not part of the language yet",
-            column,
-            "make the rate a state of its own, or name its expression in 'define'",
-        )
     hint = did_you_mean(name, FUNCTIONS)
     if name in _OTHER_NAMES:
         hint = f"write {_OTHER_NAMES[name]}"

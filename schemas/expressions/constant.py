@@ -93,5 +93,5 @@ def _constant_hint(name: str, names: Mapping[str, float]) -> str:
     if name.lower() in _OPEN:
         return "null is open: write a pair such as [0, null]"
     near = did_you_mean(name, names)
-    some = ": " + ", ".join(list(names)[:12]) if names else ""
+    some = ": " + ", ".join(list(names)[:12]) if names else ", of which there are none here"
     return near or f"a constant may use pi and the parameters before it{some}"

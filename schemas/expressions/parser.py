@@ -10,6 +10,7 @@ import math
 
 from schemas.expressions.build import function, operation
 from schemas.expressions.errors import ExpressionError, quoted
+from schemas.expressions.names import join_derivatives
 from schemas.expressions.order import check_order
 from schemas.expressions.tokens import MAX_DEPTH, MAX_NODES, TOO_LARGE, Token, tokenize
 from schemas.expressions.tree import FUNCTIONS, Name, Number, Tree, depth, walk
@@ -28,7 +29,7 @@ def parse(text: str) -> Tree:
 
     Powers are ``^`` or ``**`` and bind as in mathematics: ``-x^2`` is ``-(x^2)``, ``a^b^c`` is
     ``a^(b^c)``. Constants are folded, sums and products are flat. An exponent may be any
-    expression; a constant one is at most 64 in size.
+    expression; a constant one is at most 64 in size. A derivative, ``final.dd(q)``, is one name.
 
     Raises
     ------
@@ -37,7 +38,7 @@ def parse(text: str) -> Tree:
     """
     tokens = tokenize(text)
     check_order(tokens)
-    tree = _Reader(tokens).read()
+    tree = _Reader(join_derivatives(tokens)).read()
     if sum(1 for _ in walk(tree)) > MAX_NODES:
         raise ExpressionError(f"more than {MAX_NODES} operations and values", 1, TOO_LARGE)
     if depth(tree) > MAX_DEPTH:

@@ -1,5 +1,7 @@
 """Notes on what a gradient-based solver does not like in an expression."""
 
+from collections.abc import Set
+
 from schemas.expressions.tree import Call, Tree, walk
 
 _NOTES = {
@@ -10,7 +12,10 @@ _NOTES = {
 }
 
 
-def warnings_in(tree: Tree) -> list[str]:
-    """One note for each non-smooth function that the tree uses, in order of appearance."""
+def warnings_in(tree: Tree, treated: Set[str] = frozenset()) -> list[str]:
+    """One note for each non-smooth function that the tree uses, in order of appearance.
+
+    Functions that are ``treated`` have none.
+    """
     used = dict.fromkeys(node.function for node in walk(tree) if isinstance(node, Call))
-    return [f"{name} is {_NOTES[name]}" for name in used if name in _NOTES]
+    return [f"{name} is {_NOTES[name]}" for name in used if name in _NOTES and name not in treated]

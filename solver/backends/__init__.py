@@ -2,11 +2,19 @@
 
 from collections.abc import Mapping
 
-from solver.backends.base import Backend, NlpStatus, Outcome
+from solver.backends.base import DEFAULT, Backend, NlpStatus, Outcome, Strategy
+from solver.backends.fatrop import Fatrop
 from solver.backends.ipopt import Ipopt
+from solver.backends.sqp import Sqp
+from solver.backends.uno import Uno
 from solver.backends.watch import FEASIBLE, Iterate, Watch
 
-BACKENDS: Mapping[str, type[Backend]] = {"ipopt": Ipopt}
+BACKENDS: Mapping[str, type[Backend]] = {
+    "ipopt": Ipopt,
+    "fatrop": Fatrop,
+    "uno": Uno,
+    "sqp": Sqp,
+}
 """Name -> backend."""
 
 
@@ -17,11 +25,13 @@ def make_backend(name: str) -> Backend:
 
 __all__ = [
     "BACKENDS",
+    "DEFAULT",
     "FEASIBLE",
     "Backend",
     "Iterate",
     "NlpStatus",
     "Outcome",
+    "Strategy",
     "Watch",
     "make_backend",
 ]

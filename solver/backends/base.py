@@ -1,8 +1,8 @@
 """What a backend supplies, and the neutral words for how a solve ended.
 
-A backend answers five questions: its name, whether it is available here, whether it accepts a
-program and why not, the solve, and its status table. A new one is one file and one line in
-``BACKENDS``.
+A backend answers six questions: its name, whether it is available here, whether it accepts a
+program and why not, which strategies it knows, the solve, and its status table. A new one is one
+file and one line in ``BACKENDS``.
 """
 
 from abc import ABC, abstractmethod
@@ -36,11 +36,31 @@ class NlpStatus(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
+class Strategy:
+    """How to go about a solve, in words that any backend may understand.
+
+    ``adaptive``: choose the barrier parameter anew at each iteration, which helps hard problems
+    and hurts some easy ones. ``rescaled``: divide rows and objective by their slopes at the start.
+    """
+
+    name: str = "default"
+    adaptive: bool = False
+    rescaled: bool = False
+
+
+DEFAULT = Strategy()
+
+
+@dataclass(frozen=True, slots=True)
 class Outcome:
     """What a backend returns: the point it stands for, and why it ended.
 
     After a stop or a limit the point is the best iterate seen: the smallest violation until one
     is feasible, then the lowest objective. ``seconds`` were spent in the solver itself.
+
+    The multipliers are those of the solver's last iterate, for the scaled rows (m,) and the
+    scaled variables' bounds (n,), in CasADi's convention: at an optimum grad f + J' row + bound
+    = 0, positive where the upper limit pushes. None where the solver gives none.
     """
 
     status: NlpStatus
@@ -48,6 +68,8 @@ class Outcome:
     point: Iterate
     iterations: int
     seconds: float
+    row_multipliers: Array | None = None
+    bound_multipliers: Array | None = None
 
 
 class Backend(ABC):
@@ -64,9 +86,19 @@ class Backend(ABC):
     def refusal(self, task: NlpTask) -> str:
         """Why this program is not accepted; empty where it is."""
 
+    def offers(self, strategy: Strategy) -> bool:
+        """Whether the strategy makes a difference here."""
+        return not (strategy.adaptive or strategy.rescaled)
+
     @abstractmethod
     def solve(
-        self, task: NlpTask, settings: SolverSettings, watch: Watch, *, warm: bool
+        self,
+        task: NlpTask,
+        settings: SolverSettings,
+        watch: Watch,
+        *,
+        warm: bool,
+        strategy: Strategy = DEFAULT,
     ) -> Outcome:
         """Solve, reporting every iteration to ``watch``. ``warm``: the start is nearly optimal.
 

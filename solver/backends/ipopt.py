@@ -1,18 +1,17 @@
 """IPOPT: interior point with exact derivatives, the default (Waechter and Biegler, 2006)."""
 
-import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
 
 import casadi as ca
 import numpy as np
 
-from schemas.errors import EngineFault
 from schemas.problem import SolverSettings
-from solver.backends.base import Backend, NlpStatus, Outcome
+from solver.backends.base import DEFAULT, Backend, NlpStatus, Outcome, Strategy
 from solver.backends.memory import memory_watch
-from solver.backends.watch import FEASIBLE, Iterate, StopCause, Watch
+from solver.backends.plugin import conclude, run
+from solver.backends.watch import Watch
 from solver.nlp.task import NlpTask
 
 STATUSES: Mapping[str, NlpStatus] = MappingProxyType(
@@ -36,13 +35,6 @@ STATUSES: Mapping[str, NlpStatus] = MappingProxyType(
 """What IPOPT returns -> the neutral status. Anything else is a fault of the engine."""
 
 _SETTLED = ("Solve_Succeeded", "Solved_To_Acceptable_Level", "User_Requested_Stop")
-_ENDED_EARLY = (NlpStatus.STOPPED, NlpStatus.TIME_LIMIT, NlpStatus.ITERATION_LIMIT)
-
-_CAUSES = {
-    StopCause.REQUEST: NlpStatus.STOPPED,
-    StopCause.DEADLINE: NlpStatus.TIME_LIMIT,
-    StopCause.UNBOUNDED: NlpStatus.UNBOUNDED,
-}
 
 
 class Ipopt(Backend):
@@ -60,46 +52,32 @@ class Ipopt(Backend):
         del task
         return ""
 
+    def offers(self, strategy: Strategy) -> bool:
+        """IPOPT knows all of them."""
+        del strategy
+        return True
+
     def solve(
-        self, task: NlpTask, settings: SolverSettings, watch: Watch, *, warm: bool
+        self,
+        task: NlpTask,
+        settings: SolverSettings,
+        watch: Watch,
+        *,
+        warm: bool,
+        strategy: Strategy = DEFAULT,
     ) -> Outcome:
         """Solve by interior points; the callback sees each iterate."""
-        callback = _Callback(task, watch)
-        options = {**_options(settings, watch, warm=warm), **task.nlp.derivatives()}
+        options = _options(settings, watch, warm=warm) | _switches(strategy)
+        options |= task.nlp.derivatives()
         with memory_watch(options) as check_memory:
-            solver = ca.nlpsol(
-                "ipopt",
-                "ipopt",
-                {"x": task.nlp.symbols, "f": task.nlp.objective, "g": task.nlp.rows},
-                {**options, "iteration_callback": callback},
-            )
-            began = time.perf_counter()
-            result = solver(
-                x0=task.start,
-                lbx=task.lower,
-                ubx=task.upper,
-                lbg=task.row_lower,
-                ubg=task.row_upper,
-            )
-            seconds = time.perf_counter() - began
-            raw = str(solver.stats()["return_status"])
-            if raw not in _SETTLED:
+            ended = run("ipopt", task, watch, options)
+            if ended.raw not in _SETTLED:
                 check_memory()
-        if watch.fault is not None:
-            raise watch.fault
-        if raw not in STATUSES:
-            raise EngineFault(f"IPOPT ended with {raw}.", "Please report this problem.")
-        z, rows = result["x"].full().ravel(), result["g"].full().ravel()
-        final = Iterate(z, rows, float(result["f"]), task.violation(rows))
-        chosen, status = final, _status(raw, final, watch)
-        if status in _ENDED_EARLY and watch.best is not None:
-            chosen = watch.best
-        return Outcome(status, raw, chosen, max(watch.iterations, 0), seconds)
+        return conclude("IPOPT", ended, STATUSES, watch)
 
 
 def _options(settings: SolverSettings, watch: Watch, *, warm: bool) -> dict[str, Any]:
     options: dict[str, Any] = {
-        "print_time": False,
         "show_eval_warnings": False,
         "ipopt.print_level": 0,
         "ipopt.sb": "yes",
@@ -114,48 +92,11 @@ def _options(settings: SolverSettings, watch: Watch, *, warm: bool) -> dict[str,
     return options
 
 
-def _status(raw: str, final: Iterate, watch: Watch) -> NlpStatus:
-    """The table, told apart further by what the iterate and the watch know."""
-    status = STATUSES[raw]
-    if status is NlpStatus.STOPPED and watch.cause is not None:
-        return _CAUSES[watch.cause]
-    feasible = final.violation <= FEASIBLE
-    if status is NlpStatus.ACCEPTABLE and not feasible:
-        return NlpStatus.INFEASIBLE
-    if status is NlpStatus.INFEASIBLE and feasible:
-        return NlpStatus.ACCEPTABLE
-    return status
-
-
-class _Callback(ca.Callback):
-    """Hands each iterate to the watch."""
-
-    def __init__(self, task: NlpTask, watch: Watch) -> None:
-        super().__init__()
-        self.task, self.watch = task, watch
-        self.sizes = {"x": len(task.start), "f": 1, "g": len(task.row_lower)}
-        self.construct("watch", {})
-
-    def get_n_in(self) -> int:
-        return int(ca.nlpsol_n_out())
-
-    def get_n_out(self) -> int:
-        return 1
-
-    def get_name_in(self, index: int) -> str:
-        return str(ca.nlpsol_out(index))
-
-    def get_sparsity_in(self, index: int) -> ca.Sparsity:
-        name = ca.nlpsol_out(index)
-        return ca.Sparsity.dense(self.sizes.get(name, 0), 1)
-
-    def has_eval_buffer(self) -> bool:
-        return True
-
-    def eval_buffer(self, arguments: Sequence[memoryview], results: Sequence[memoryview]) -> int:
-        # Buffers, not matrices: their conversion would double the cost of the callback.
-        z, objective, rows = (np.frombuffer(memory) for memory in arguments[:3])
-        violation = self.task.violation(rows)
-        iterate = Iterate(z.copy(), rows.copy(), float(objective[0]), violation)
-        np.frombuffer(results[0])[:] = self.watch.see(iterate)
-        return 0
+def _switches(strategy: Strategy) -> dict[str, Any]:
+    options: dict[str, Any] = {}
+    if strategy.adaptive:
+        options["ipopt.mu_strategy"] = "adaptive"
+    if strategy.rescaled:
+        # Slopes above 1 are divided down to it; by default, those above 100.
+        options["ipopt.nlp_scaling_max_gradient"] = 1.0
+    return options

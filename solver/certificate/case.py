@@ -1,26 +1,32 @@
 """What is judged: a problem's text and the published curves, ready to be evaluated."""
 
 import functools
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Self
+from typing import NamedTuple, Self
 
 import numpy as np
 
 from schemas import resolve
+from schemas.expressions import Tree
 from schemas.phases import Phase
 from schemas.problem import Problem
 from schemas.results import PhaseResult
+from solver.lowering import lower
+from solver.lowering.used import used_integrals
+from solver.lowering.form import Form
 from solver.numeric import (
     Along,
     Array,
-    Integral,
     MalformedCurves,
     PhaseCurves,
     Samples,
     along,
+    departure,
     dynamics,
     integrate,
+    named,
 )
 
 COARSE_TOLERANCE = 1e-3
@@ -30,12 +36,26 @@ SAMPLES = 25
 """Points a segment, both ends included, at which bounds and path constraints are sampled."""
 
 
+class Quadrature(NamedTuple):
+    """An integral over the published curves, and a bound on the quadrature's own error."""
+
+    value: float
+    error: float
+
+
 @dataclass(frozen=True)
 class PhaseCase:
-    """One phase's text and its curves. Not slotted: what several checks need is cached."""
+    """One phase's text and its curves. Not slotted: what several checks need is cached.
+
+    ``statics`` are numbers that every expression may use; ``judged`` names the integrals that
+    something depends on: no other is computed.
+    """
 
     spec: Phase
+    form: Form
     curves: PhaseCurves
+    statics: Mapping[str, float]
+    judged: tuple[str, ...]
 
     @property
     def name(self) -> str:
@@ -43,14 +63,19 @@ class PhaseCase:
         return self.spec.name
 
     @functools.cached_property
-    def constants(self) -> dict[str, float]:
-        """The system's parameters."""
+    def given(self) -> dict[str, float]:
+        """Numbers beside the form's own: the statics, and the start of a closed form."""
+        return {**self.statics, **departure(self.form, self.curves)}
+
+    @functools.cached_property
+    def parameters(self) -> dict[str, float]:
+        """The system's parameters, which limits may use."""
         return resolve.parameters(self.spec.system)
 
     @functools.cached_property
     def dynamics(self) -> Along:
-        """The derivatives of the states."""
-        return dynamics(self.spec.system)
+        """The derivatives of the states; not for closed forms."""
+        return dynamics(self.form, self.given)
 
     @functools.cached_property
     def samples(self) -> Samples:
@@ -62,45 +87,64 @@ class PhaseCase:
         """One plus the largest size of each state along the phase, (states,)."""
         return np.asarray(1.0 + np.abs(self.samples.x).max(axis=1))
 
+    def sampled(self, trees: Sequence[Tree]) -> Array:
+        """Expressions at the samples, (trees, samples)."""
+        at = self.samples
+        return along(self.form, trees, self.given)(at.t, at.x, at.u)
+
     @functools.cached_property
-    def integrals(self) -> Integral:
-        """The named integrals over the published curves."""
-        trees = [expression.tree for expression in self.spec.integrals.values()]
-        integrand = along(self.spec.system, trees)
-        return integrate(self.curves, lambda at: integrand(at.t, at.x, at.u))
+    def integrals(self) -> dict[str, Quadrature]:
+        """The named integrals that matter, over the published curves."""
+        trees = [self.spec.integrals[name].tree for name in self.judged]
+        integrand = along(self.form, trees, self.given)
+        found = integrate(self.curves, lambda at: integrand(at.t, at.x, at.u))
+        pairs = zip(found.value.tolist(), found.error.tolist(), strict=True)
+        return {name: Quadrature(*pair) for name, pair in zip(self.judged, pairs, strict=True)}
 
     @functools.cached_property
     def ends(self) -> dict[str, float]:
-        """``initial.NAME`` and ``final.NAME`` of time, states and controls."""
-        names = ["t", *self.spec.system.states, *self.spec.system.controls]
-        points = np.vstack([self.samples.t, self.samples.x, self.samples.u])
+        """``initial.NAME`` and ``final.NAME`` of time and of every name of the form."""
+        form, at = self.form, self.samples
+        names = ["t", *form.states, *form.controls, *form.definitions, *form.algebraic]
+        x, u = at.x[:, [0, -1]], at.u[:, [0, -1]]
+        values = named(form, names, self.given)(at.t[[0, -1]], x, u)
         return {
-            f"{side}.{name}": float(row[column])
-            for side, column in (("initial", 0), ("final", -1))
-            for name, row in zip(names, points, strict=True)
+            f"{side}.{name}": float(value)
+            for side, column in zip(("initial", "final"), values.T, strict=True)
+            for name, value in zip(names, column, strict=True)
         }
+
+    @property
+    def duration(self) -> float:
+        """From the first to the last time, in seconds."""
+        return float(self.curves.breaks[-1] - self.curves.breaks[0])
 
     @functools.cached_property
     def scope(self) -> dict[str, float]:
         """Every number that boundary constraints and objectives may use."""
-        integrals = zip(self.spec.integrals, self.integrals.value.tolist(), strict=True)
-        duration = self.ends["final.t"] - self.ends["initial.t"]
-        return {**self.constants, **dict(integrals), **self.ends, "duration": duration}
+        integrals = {name: found.value for name, found in self.integrals.items()}
+        ends = {**self.ends, "duration": self.duration}
+        return {**self.statics, **self.parameters, **integrals, **ends}
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Case:
     """All phases, the published objective, and the tolerances to judge by."""
 
     problem: Problem
     phases: tuple[PhaseCase, ...]
+    statics: Mapping[str, float]
     objective: float | None
     tolerance: float
     constraint_tolerance: float
 
     @classmethod
     def open(
-        cls, problem: Problem, results: Sequence[PhaseResult], objective: float | None
+        cls,
+        problem: Problem,
+        results: Sequence[PhaseResult],
+        objective: float | None,
+        statics: Mapping[str, float | None],
     ) -> Self:
         """Read the curves of every phase.
 
@@ -110,18 +154,35 @@ class Case:
             If a phase has no result, or one that cannot be read.
         """
         by_name = {result.name: result for result in results}
+        values = {name: _number(statics.get(name)) for name in problem.static}
         phases = []
-        for spec in problem.phases:
+        for spec, form in zip(problem.phases, lower(problem), strict=True):
             if spec.name not in by_name:
                 raise MalformedCurves(f"phase {spec.name} has no result")
-            phases.append(PhaseCase(spec, PhaseCurves.read(spec, by_name[spec.name])))
+            curves = PhaseCurves.read(form, by_name[spec.name])
+            phases.append(PhaseCase(spec, form, curves, values, used_integrals(problem, spec)))
         settings = problem.certificate
-        return cls(
-            problem, tuple(phases), objective, _tolerance(problem), settings.constraint_tolerance
-        )
+        tolerances = certificate_tolerance(problem), settings.constraint_tolerance
+        return cls(problem, tuple(phases), values, objective, *tolerances)
+
+    @functools.cached_property
+    def scope(self) -> dict[str, float]:
+        """Every phase's names under its prefix; the only phase's bare as well; the statics."""
+        scope = {
+            f"{phase.name}.{name}": value
+            for phase in self.phases
+            for name, value in phase.scope.items()
+        }
+        only = self.phases[0].scope if len(self.phases) == 1 else {}
+        return {**scope, **only, **self.statics}
 
 
-def _tolerance(problem: Problem) -> float:
+def certificate_tolerance(problem: Problem) -> float:
+    """What judges dynamics and objective, unless the problem says it itself."""
     if problem.certificate.tolerance is not None:
         return problem.certificate.tolerance
     return min(1.0, 10 * problem.refinement.tolerance) if problem.refinement else COARSE_TOLERANCE
+
+
+def _number(value: float | None) -> float:
+    return math.nan if value is None else value

@@ -1,14 +1,14 @@
 """The certificate: every check in turn, and the verdict."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
 from schemas.problem import Problem
 from schemas.results import Certificate, Check, PhaseResult
-from solver.certificate.bounds import control_overshoot, state_bounds
+from solver.certificate.bounds import control_overshoot, state_bounds, static_bounds
 from solver.certificate.case import Case
-from solver.certificate.constraints import boundary_constraints, path_constraints
+from solver.certificate.constraints import boundary_constraints, linkages, path_constraints
 from solver.certificate.continuity import continuity
 from solver.certificate.dynamics import interval_defect
 from solver.certificate.ends import end_values, time
@@ -25,6 +25,8 @@ JUDGED: tuple[Callable[[Case], Check | None], ...] = (
     control_overshoot,
     path_constraints,
     boundary_constraints,
+    linkages,
+    static_bounds,
     recomputed,
 )
 """In the order of the certificate's rows. A check answers None where it does not apply."""
@@ -39,19 +41,22 @@ def certify(
     phases: Sequence[PhaseResult],
     objective: float | None,
     checks: Sequence[Callable[[Case], Check | None]] = CHECKS,
+    statics: Mapping[str, float | None] | None = None,
 ) -> Certificate:
     """Judge published curves against the problem's own text, by other means than the solver's.
 
     Parameters
     ----------
     problem
-        As it was posted and checked.
+        As it was posted and checked; smoothed where that was asked for.
     phases
         The result of every phase. Only names and curves are read.
     objective
         The published value of the objective.
     checks
         ``CHECKS``, or ``JUDGED`` where there is no time for the rest.
+    statics
+        The published values of the static parameters.
 
     Returns
     -------
@@ -59,7 +64,7 @@ def certify(
     ``curves``, whose ``where`` says why.
     """
     try:
-        case = Case.open(problem, phases, objective)
+        case = Case.open(problem, phases, objective, statics or {})
     except MalformedCurves as reason:
         return Certificate(verdict="not_certified", checks=[_unreadable(str(reason))])
     rows = [row for row in (check(case) for check in checks) if row is not None]

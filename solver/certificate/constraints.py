@@ -1,4 +1,6 @@
-"""Path and boundary constraints."""
+"""Path and boundary constraints, and linkages between phases."""
+
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -7,7 +9,8 @@ from schemas.phases import Constraint
 from schemas.results import Check
 from solver.certificate.case import Case, PhaseCase
 from solver.certificate.findings import Finding, judge, violation, worst_sample
-from solver.numeric import along, evaluate
+from solver.certificate.unsettled import unsettled
+from solver.numeric import evaluate
 
 
 def path_constraints(case: Case) -> Check | None:
@@ -19,24 +22,46 @@ def path_constraints(case: Case) -> Check | None:
 def boundary_constraints(case: Case) -> Check | None:
     """How far boundary constraints are violated; integrals in them are computed anew."""
     findings = [
-        _at_ends(phase, constraint) for phase in case.phases for constraint in phase.spec.boundary
+        finding
+        for phase in case.phases
+        for row in phase.spec.boundary
+        for finding in (
+            _once(row, phase.scope, phase.parameters, f"phase {phase.name}, {row.name}"),
+            *unsettled(case, row.expression.tree, case.constraint_tolerance, phase),
+        )
     ]
     return judge("boundary constraints", findings, case.constraint_tolerance)
 
 
+def linkages(case: Case) -> Check | None:
+    """How far the constraints over the ends of several phases are violated."""
+    findings = [
+        finding
+        for row in case.problem.linkages
+        for finding in (
+            _once(row, case.scope, {}, f"linkage {row.name}"),
+            *unsettled(case, row.expression.tree, case.constraint_tolerance),
+        )
+    ]
+    return judge("linkages", findings, case.constraint_tolerance)
+
+
 def _along_path(phase: PhaseCase) -> list[Finding]:
-    at, rows = phase.samples, phase.spec.path
+    rows = phase.spec.path
     if not rows:
         return []
-    values = along(phase.spec.system, [row.expression.tree for row in rows])(at.t, at.x, at.u)
+    values = phase.sampled([row.expression.tree for row in rows])
     sizes = [
-        violation(value, resolve.interval(row, phase.constants))
+        violation(value, resolve.interval(row, phase.parameters))
         for row, value in zip(rows, values, strict=True)
     ]
-    return [worst_sample(phase.name, [row.name for row in rows], at.t, np.array(sizes))]
+    names = [row.name for row in rows]
+    return [worst_sample(phase.name, names, phase.samples.t, np.array(sizes))]
 
 
-def _at_ends(phase: PhaseCase, constraint: Constraint) -> Finding:
-    value = np.array(evaluate(constraint.expression.tree, phase.scope))
-    size = violation(value, resolve.interval(constraint, phase.constants))
-    return Finding(float(size), f"phase {phase.name}, {constraint.name}")
+def _once(
+    row: Constraint, scope: Mapping[str, float], constants: Mapping[str, float], where: str
+) -> Finding:
+    """A constraint over numbers of the ends; its limits may use ``constants``."""
+    value = np.array(evaluate(row.expression.tree, scope))
+    return Finding(float(violation(value, resolve.interval(row, constants))), where)

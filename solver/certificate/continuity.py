@@ -16,4 +16,4 @@ def continuity(case: Case) -> Check | None:
 def _jump(phase: PhaseCase) -> Finding:
     ends = phase.curves.states.grid(np.array([-1.0, 1.0]))
     sizes = np.abs(ends[:, 1:, 0] - ends[:, :-1, 1]) / phase.scale[:, None]
-    return worst_sample(phase.name, phase.spec.system.states, phase.curves.breaks[1:-1], sizes)
+    return worst_sample(phase.name, phase.form.states, phase.curves.breaks[1:-1], sizes)

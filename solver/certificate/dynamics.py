@@ -9,7 +9,7 @@ from schemas.results import Check
 from solver.certificate.case import Case, PhaseCase
 from solver.certificate.findings import Finding, judge, worst_sample
 from solver.certificate.integration import EVALUATIONS, Integrator, Unfinished
-from solver.numeric import Array
+from solver.numeric import Array, flow
 
 PLACES = np.linspace(-1.0, 1.0, 5)
 """Where in a segment the two are compared: the quarters and the end."""
@@ -23,9 +23,13 @@ def interval_defect(case: Case) -> Check | None:
 
     Each segment starts at the curve's own state and follows the curve's own control, with the
     limits from inside the segment at its ends. Distances are relative to one plus the state's
-    largest size in the phase.
+    largest size in the phase. A closed form needs no integration: its curves are compared with its
+    formula from their own start.
     """
-    findings = [_defect(phase, case.tolerance) for phase in case.phases]
+    findings = [
+        _distance(phase) if phase.form.flow else _defect(phase, case.tolerance)
+        for phase in case.phases
+    ]
     return judge("interval defect", findings, case.tolerance)
 
 
@@ -37,8 +41,16 @@ def _defect(phase: PhaseCase, tolerance: float) -> Finding:
         return Finding(math.nan, f"{_culprit(phase, reason)}: {reason}")
     sizes = np.abs(motion - curve) / phase.scale[:, None, None]
     times = phase.curves.time(np.arange(curve.shape[1])[:, None], PLACES)
-    states = phase.spec.system.states
+    states = phase.form.states
     return worst_sample(phase.name, states, times.ravel(), sizes.reshape(len(states), -1))
+
+
+def _distance(phase: PhaseCase) -> Finding:
+    """Of a closed form's curves from its formula."""
+    at = phase.samples
+    formula = flow(phase.form, phase.curves, phase.given)(at.t, at.x, at.u)
+    sizes = np.abs(at.x - formula) / phase.scale[:, None]
+    return worst_sample(phase.name, phase.form.states, at.t, sizes)
 
 
 def _culprit(phase: PhaseCase, reason: Unfinished) -> str:
@@ -47,7 +59,7 @@ def _culprit(phase: PhaseCase, reason: Unfinished) -> str:
     speed = np.nan_to_num(np.abs(reason.rates), nan=np.inf)
     row, segment = divmod(int(np.argmax(speed)), segments)
     time = phase.curves.time(np.array(segment), reason.at)
-    return f"phase {phase.name}, {phase.spec.system.states[row]}, t = {time:.6g} s"
+    return f"phase {phase.name}, {phase.form.states[row]}, t = {time:.6g} s"
 
 
 def _integrated(phase: PhaseCase, start: Array, tolerance: float) -> Array:

@@ -23,26 +23,44 @@ def end_values(case: Case) -> Check | None:
 
 
 def time(case: Case) -> Check | None:
-    """How far the phases' times lie off theirs; a phase must not end before it starts."""
+    """How far the phases' times and durations lie off theirs.
+
+    A later phase starts when the one before it ends. None can end before it starts: curves whose
+    breaks decrease are not read.
+    """
+    befores = (None, *case.phases[:-1])
     findings = [
         finding
-        for phase in case.phases
-        for side, bound in (("initial", phase.spec.time.start), ("final", phase.spec.time.final))
-        for finding in _off(phase, side, {"t": bound})
+        for phase, before in zip(case.phases, befores, strict=True)
+        for finding in (_starts(phase, before), *_ends(phase))
     ]
     return judge("time", findings, case.constraint_tolerance)
 
 
+def _starts(phase: PhaseCase, before: PhaseCase | None) -> Finding:
+    if before is None:
+        return _beyond(phase, "initial.t", phase.ends["initial.t"], phase.spec.time.start)
+    start, end = phase.ends["initial.t"], before.ends["final.t"]
+    where = f"phase {phase.name}, initial.t is not phase {before.name}, final.t"
+    return Finding(abs(start - end) / (1 + abs(end)), where)
+
+
+def _ends(phase: PhaseCase) -> list[Finding]:
+    spec = phase.spec.time
+    pairs = (
+        ("final.t", phase.ends["final.t"], spec.final),
+        ("duration", phase.duration, spec.duration),
+    )
+    return [_beyond(phase, what, value, bound) for what, value, bound in pairs if bound]
+
+
 def _off(phase: PhaseCase, side: str, bounds: Mapping[str, Bound]) -> list[Finding]:
     return [
-        Finding(
-            float(
-                violation(
-                    np.array(phase.ends[f"{side}.{name}"]),
-                    resolve.interval(bound, phase.constants),
-                )
-            ),
-            f"phase {phase.name}, {side}.{name}",
-        )
+        _beyond(phase, f"{side}.{name}", phase.ends[f"{side}.{name}"], bound)
         for name, bound in bounds.items()
     ]
+
+
+def _beyond(phase: PhaseCase, what: str, value: float, bound: Bound) -> Finding:
+    size = violation(np.array(value), resolve.interval(bound, phase.parameters))
+    return Finding(float(size), f"phase {phase.name}, {what}")

@@ -31,9 +31,12 @@ def worst_sample(phase: str, names: Sequence[str], times: Array, sizes: Array) -
 
 
 def violation(values: Array, limits: tuple[float, float]) -> Array:
-    """How far values lie outside of ``(lower, upper)``, relative to one plus the limit's size."""
+    """How far values lie outside of ``(lower, upper)``, relative to one plus the limit's size.
+
+    What is not a number keeps no limit, open ones included.
+    """
     lower, upper = limits
-    beyond = np.zeros_like(values)
+    beyond = np.where(np.isnan(values), np.nan, 0.0)
     if math.isfinite(lower):
         beyond = np.maximum(beyond, (lower - values) / (1 + abs(lower)))
     if math.isfinite(upper):

@@ -6,5 +6,7 @@ first-order ones; absolute values become slacks or smooth functions.
 
 from solver.lowering.form import Form, Unknowns
 from solver.lowering.lower import lower, lower_native
+from solver.lowering.slacks import Slacks, slacks
+from solver.lowering.smoothed import smoothed
 
-__all__ = ["Form", "Unknowns", "lower", "lower_native"]
+__all__ = ["Form", "Slacks", "Unknowns", "lower", "lower_native", "slacks", "smoothed"]

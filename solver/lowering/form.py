@@ -35,11 +35,13 @@ class Form:
         implicit systems and their derivatives.
     definitions
         Intermediates in an order in which each needs only those before it (or unknowns): the
-        user's own, and derivatives such as ``d(x)`` that are no states.
+        user's own, derivatives such as ``d(x)`` that are no states, and pieces of large ones
+        under names with a ``#``. Those alone that something of the phase uses.
     derivatives
-        The time derivative of every state but those of a closed form.
+        The time derivative of every state but those of a closed form or a native form.
     flow
-        Of a closed form: each state over ``initial.NAME``, ``initial.t`` and ``t``; else empty.
+        Of a closed form: each state over ``initial.NAME``, ``initial.t``, ``t`` and definitions
+        over these; else empty.
     natives, residuals
         Of a native form only: names that the method itself supplies along the phase, and what
         it has to make zero, label -> tree.

@@ -9,7 +9,7 @@ from schemas.phases import Constraint as ConstraintSpec
 from schemas.phases import Phase as PhaseSpec
 from schemas.problem import Problem, Static as StaticSpec
 from schemas.values import Bound
-from solver.lowering import Form, lower, lower_native
+from solver.lowering import Form, Slacks, lower, lower_native, slacks
 from solver.model.model import OPEN, Constraint, Interval, Model, Phase, Static
 
 
@@ -24,7 +24,7 @@ def build_model(problem: Problem, native: Sequence[bool] | None = None) -> Model
     phases = []
     for index, (spec, chain) in enumerate(zip(problem.phases, forms, strict=True)):
         form = lower_native(problem, index) if native[index] else chain
-        extra = _slacks(problem, index) if softened else None
+        extra = slacks(problem, index) if softened else None
         phases.append(_phase(spec, form, chain, extra, first=index == 0))
     objective = problem.objective.minimize.tree if problem.objective else None
     statics = tuple(_static(name, spec) for name, spec in problem.static.items())
@@ -32,13 +32,8 @@ def build_model(problem: Problem, native: Sequence[bool] | None = None) -> Model
     return Model(tuple(phases), objective, statics, linkages)
 
 
-def _slacks(problem: Problem, index: int) -> "Slacks":
-    from solver.lowering import slacks
-    return slacks(problem, index)
-
-
 def _phase(
-    spec: PhaseSpec, form: Form, chain: Form, extra: "Slacks | None", *, first: bool
+    spec: PhaseSpec, form: Form, chain: Form, extra: Slacks | None, *, first: bool
 ) -> Phase:
     constants = form.constants
     variables = [*form.states, *form.controls]
@@ -68,7 +63,7 @@ def _phase(
         start=_interval(spec.time.start, constants) if first else None,
         end=_interval(spec.time.final, constants),
         duration=_interval(spec.time.duration, constants),
-        publish=chain.publish,
+        chain=chain,
     )
 
 
@@ -83,7 +78,7 @@ def _initials(form: Form) -> tuple[str, ...]:
     return (*(f"initial.{name}" for name in form.states), "initial.t")
 
 
-def _rows_of(form: Form, extra: "Slacks | None") -> list[Constraint]:
+def _rows_of(form: Form, extra: Slacks | None) -> list[Constraint]:
     """What the form itself asks for at every node."""
     zero, above = Interval(0.0, 0.0), Interval(0.0, math.inf)
     rows = [

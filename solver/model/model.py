@@ -64,8 +64,9 @@ class Phase:
         An interval for every state and control of the form.
     start
         None where the phase starts when the one before it ends.
-    publish
-        Group of the result -> names of its series.
+    chain
+        The motion in first-order form whatever the method: what results publish and the mesh
+        error judges.
     """
 
     name: str
@@ -81,7 +82,7 @@ class Phase:
     start: Interval | None
     end: Interval
     duration: Interval
-    publish: Mapping[str, tuple[str, ...]]
+    chain: Form
 
     @property
     def states(self) -> tuple[str, ...]:

@@ -14,6 +14,7 @@ from solver.nlp.stages import StageGroup
 from solver.nlp.variables import Variables
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.int_]
 
 
 class RowLabel(NamedTuple):
@@ -50,6 +51,20 @@ class Program:
         """An attribute of ``Rows`` for every row, ``sums`` for the rows of the sums."""
         parts = [np.tile(getattr(group.rows, attribute), group.stages) for group in self.groups]
         return np.concatenate([*parts, np.full(len(self.sum_names), sums)])
+
+    def nodes(self) -> Indices:
+        """The place of each variable in the order of time, over all phases, shape (n,).
+
+        Equal times have equal places; -1 for what has no time.
+        """
+        places = np.full(self.variables.size, np.nan)
+        for block in self.variables.blocks:
+            if block.phase is not None:
+                # Two apart, so that one phase's end and the next one's start are two places.
+                places[block.indices] = 2.0 * block.phase + block.fractions
+        timed, nodes = np.isfinite(places), np.full(len(places), -1)
+        nodes[timed] = np.unique(places[timed], return_inverse=True)[1]
+        return nodes
 
     def labels(self) -> Iterator[RowLabel]:
         """The label of every row, in order."""

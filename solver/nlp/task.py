@@ -18,7 +18,11 @@ Indices = NDArray[np.int_]
 
 @dataclass(frozen=True, slots=True)
 class NlpTask:
-    """Functions, start and limits, all scaled: z (n,), rows (m,)."""
+    """Functions, start and limits, all scaled: z (n,), rows (m,).
+
+    ``nodes`` (n,) puts the variables in order of time, as ``Program.nodes`` does; None where the
+    order is not known.
+    """
 
     nlp: Nlp
     start: Array
@@ -26,6 +30,7 @@ class NlpTask:
     upper: Array
     row_lower: Array
     row_upper: Array
+    nodes: Indices | None = None
 
     @classmethod
     def of(cls, program: Program, scaling: Scaling) -> Self:
@@ -38,6 +43,7 @@ class NlpTask:
             upper=variables.gather("upper") / scaling.columns,
             row_lower=program.row_vector("lower", 0.0) / scaling.rows,
             row_upper=program.row_vector("upper", 0.0) / scaling.rows,
+            nodes=program.nodes(),
         )
 
     def without(self, redundancy: Redundancy) -> Self:
@@ -50,13 +56,16 @@ class NlpTask:
             row_upper=_opened(self.row_upper, redundancy.rows, np.inf),
         )
 
-    def violation(self, rows: Array) -> float:
+    def violation(self, rows: Array, z: Array | None = None) -> float:
         """The largest violation of a scaled row; infinite where not a number.
 
-        Every backend keeps its iterates within the bounds.
+        With ``z``, of the bounds too: for backends whose iterates may lie outside of them.
         """
         excess = np.maximum(self.row_lower - rows, rows - self.row_upper)
         worst = float(excess.max(initial=0.0))
+        if z is not None:
+            outside = np.maximum(self.lower - z, z - self.upper)
+            worst = max(worst, float(outside.max(initial=0.0)))
         return worst if math.isfinite(worst) else math.inf
 
 

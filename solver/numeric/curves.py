@@ -8,12 +8,16 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from footfall.curves import Curves, fit
-from schemas.phases import Phase
-from schemas.results import CurveGroup, PhaseResult
+from footfall.curves import Curve, fit
+from schemas.results import PhaseResult
+from solver.lowering.form import Form
 from solver.numeric.tape import Array
 
 Index = NDArray[np.intp]
+
+GROUPS = ("states", "controls", "rates")
+"""Where the series of a motion are: a control whose derivatives are used is a state of its form,
+and is published among the controls all the same. So a series is found by its name."""
 
 
 class MalformedCurves(ValueError):
@@ -59,25 +63,26 @@ class PhaseCurves:
     controls: Pieces
 
     @classmethod
-    def read(cls, phase: Phase, result: PhaseResult) -> Self:
-        """The curves of a result, on the union of the breaks of states and controls.
+    def read(cls, form: Form, result: PhaseResult) -> Self:
+        """The curves of a form's states and controls, on the union of all their breaks.
 
         Raises
         ------
         MalformedCurves
             If a series is missing, its pieces do not fit the breaks, or the spans differ.
         """
-        x = _curves(result.curves.get("states"), phase.system.states, "states")
-        if not phase.system.controls:
-            return cls(x.breaks, _pieces(x, x.breaks), Pieces(np.empty((0, len(x.breaks) - 1, 1))))
-        u = _curves(result.curves.get("controls"), phase.system.controls, "controls")
-        if not np.allclose(x.breaks[[0, -1]], u.breaks[[0, -1]], rtol=1e-12, atol=1e-12):
-            raise MalformedCurves("states and controls are not over the same span of time")
-        breaks = x.breaks
-        if not np.array_equal(x.breaks, u.breaks):
-            inner = u.breaks[(u.breaks > breaks[0]) & (u.breaks < breaks[-1])]
+        names = [*form.states, *form.controls]
+        curves = _curves(result, names)
+        breaks = curves[0].breaks
+        for curve in curves[1:]:
+            if np.array_equal(curve.breaks, breaks):
+                continue
+            if not np.allclose(curve.domain, breaks[[0, -1]], rtol=1e-12, atol=1e-12):
+                raise MalformedCurves(f"{' and '.join(names)} are not over the same span of time")
+            inner = curve.breaks[(curve.breaks > breaks[0]) & (curve.breaks < breaks[-1])]
             breaks = np.union1d(breaks, inner)
-        return cls(breaks, _pieces(x, breaks), _pieces(u, breaks))
+        states, controls = curves[: len(form.states)], curves[len(form.states) :]
+        return cls(breaks, _pieces(states, breaks), _pieces(controls, breaks))
 
     @property
     def segments(self) -> int:
@@ -113,27 +118,30 @@ class PhaseCurves:
         return Samples(self.time(segment, s), x, u)
 
 
-def _curves(group: CurveGroup | None, names: Sequence[str], label: str) -> Curves:
-    if group is None:
-        raise MalformedCurves(f"there are no curves of the {label}")
-    missing = [name for name in names if name not in group.coefficients]
-    if missing:
-        raise MalformedCurves(f"the {label} have no curve of {', '.join(missing)}")
+def _curves(result: PhaseResult, names: Sequence[str]) -> list[Curve]:
+    """The series of these names, each from the group that has it."""
+    groups = [result.curves[label] for label in GROUPS if label in result.curves]
+    homes = {name: group for group in groups for name in group.coefficients}
+    if missing := [name for name in names if name not in homes]:
+        raise MalformedCurves(f"there is no curve of {', '.join(missing)}")
     try:
-        return Curves(
-            group.breaks, {name: np.array(group.coefficients[name], dtype=float) for name in names}
-        )
+        return [
+            Curve(homes[name].breaks, np.array(homes[name].coefficients[name], dtype=float))
+            for name in names
+        ]
     except ValueError as error:
-        raise MalformedCurves(f"the curves of the {label} cannot be read: {error}") from error
+        raise MalformedCurves(f"the curves cannot be read: {error}") from error
 
 
-def _pieces(curves: Curves, breaks: Array) -> Pieces:
-    """All series of a group, padded to one degree, on the same breaks or on finer ones."""
-    terms = max(curve.degree for curve in curves.values()) + 1
-    if np.array_equal(curves.breaks, breaks):
-        rows = [curve.coefficients for curve in curves.values()]
-        return Pieces(np.array([np.pad(row, [(0, 0), (0, terms - row.shape[1])]) for row in rows]))
+def _pieces(curves: Sequence[Curve], breaks: Array) -> Pieces:
+    """Series padded to one degree, on their own breaks or on finer ones."""
+    terms = max((curve.degree for curve in curves), default=0) + 1
+    rows = np.zeros((len(curves), len(breaks) - 1, terms))
     nodes = chebyshev.chebpts1(terms)
-    times = breaks[:-1, None] + np.diff(breaks)[:, None] * (nodes + 1) / 2
-    values = np.stack([curve(times) for curve in curves.values()], axis=2)
-    return Pieces(fit(nodes, values))
+    for row, curve in zip(rows, curves, strict=True):
+        if np.array_equal(curve.breaks, breaks):
+            row[:, : curve.degree + 1] = curve.coefficients
+        else:
+            times = breaks[:-1, None] + np.diff(breaks)[:, None] * (nodes + 1) / 2
+            row[:] = fit(nodes, curve(times)[:, :, None])[0]
+    return Pieces(rows)

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.expressions import Name, Tree, fold
+from schemas.expressions import Name, Tree, fold, names_in
 from solver.numeric.functions import FUNCTIONS
 
 Array = NDArray[np.float64]
@@ -30,13 +30,18 @@ class Tape:
     steps: tuple[Step, ...]
     outputs: tuple[int, ...]
 
+    @property
+    def reads(self) -> frozenset[int]:
+        """The slots that are needed, inputs among them."""
+        return frozenset(self.outputs).union(*(step.arguments for step in self.steps))
+
     def __call__(self, inputs: Sequence[Any], shape: tuple[int, ...]) -> Array:
         """Evaluate at many points at once.
 
         Parameters
         ----------
         inputs
-            One array of ``shape``, or a scalar, for each input.
+            One array of ``shape``, or one that broadcasts to it, for each input.
         shape
             The shape of the set of points.
 
@@ -57,7 +62,10 @@ class Tape:
 
 @dataclass(frozen=True, slots=True)
 class Scope:
-    """What the names in an expression mean: points' inputs, constants, named intermediates."""
+    """What the names in an expression mean: points' inputs, constants, named intermediates.
+
+    ``definitions`` are in an order in which each needs only those before it.
+    """
 
     inputs: Sequence[str]
     constants: Mapping[str, float] = field(default_factory=dict)
@@ -67,8 +75,23 @@ class Scope:
 def record(trees: Sequence[Tree], scope: Scope) -> Tape:
     """The tape of some expressions; intermediates that none of them uses leave no steps."""
     recorder = _Recorder(scope)
+    needed = _needed(trees, scope.definitions)
+    for name, tree in scope.definitions.items():
+        if name in needed:
+            recorder.define(name, tree)
     outputs = tuple(recorder.tree(tree) for tree in trees)
     return Tape(tuple(recorder.template), tuple(recorder.steps), outputs)
+
+
+def _needed(trees: Sequence[Tree], definitions: Mapping[str, Tree]) -> set[str]:
+    """The intermediates behind some expressions; chains of them may be long."""
+    needed, pending = set[str](), list(trees)
+    while pending:
+        for name in names_in(pending.pop()):
+            if name.name in definitions and name.name not in needed:
+                needed.add(name.name)
+                pending.append(definitions[name.name])
+    return needed
 
 
 class _Recorder:
@@ -77,7 +100,6 @@ class _Recorder:
     def __init__(self, scope: Scope) -> None:
         self.template: list[Any] = [None] * len(scope.inputs)
         self.steps: list[Step] = []
-        self._definitions = scope.definitions
         self._names = {name: slot for slot, name in enumerate(scope.inputs)}
         self._shared: dict[object, int] = {}
         self._calls = {name: functools.partial(self._call, name) for name in FUNCTIONS}
@@ -87,9 +109,11 @@ class _Recorder:
     def tree(self, tree: Tree) -> int:
         return fold(tree, self._calls, self._lookup, self._number)
 
+    def define(self, name: str, tree: Tree) -> None:
+        """Give an intermediate its name."""
+        self._names[name] = self.tree(tree)
+
     def _lookup(self, name: Name) -> int:
-        if name.name not in self._names:
-            self._names[name.name] = self.tree(self._definitions[name.name])
         return self._names[name.name]
 
     def _number(self, value: float) -> int:

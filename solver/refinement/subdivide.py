@@ -9,6 +9,7 @@ from schemas.problem import Refinement
 from solver.mesh import Mesh
 
 Array = NDArray[np.float64]
+Counts = NDArray[np.int_]
 
 KAPPA = 0.1
 """The safety factor of 8.22: aim at a tenth of the tolerance."""
@@ -19,23 +20,41 @@ def refine(
 ) -> list[Mesh] | None:
     """Cut every segment of every phase whose error is above the tolerance.
 
-    A segment of error e gets ceil((e / (kappa * tolerance))^(1 / order)) parts, two at the least
-    and ``settings.max_subdivisions`` at the most; an error that is not a number counts as the
-    largest. Where that would pass ``settings.max_segments`` the worst segments are halved, as
-    many as there is room for. None where there is no room at all.
+    As ``count_parts`` says. None where there is no room at all under ``settings.max_segments``.
     """
-    flat = np.nan_to_num(np.concatenate(errors), nan=np.inf, posinf=np.inf)
-    parts = np.where(flat > settings.tolerance, _parts(flat, order, settings), 1)
+    flat = np.concatenate(errors)
     room = settings.max_segments - len(flat)
     if room <= 0:
         return None
-    if np.sum(parts - 1) > room:
-        worst = np.argsort(-flat, kind="stable")[:room]
-        parts = np.where(np.isin(np.arange(len(flat)), worst) & (parts > 1), 2, 1)
+    parts = keep_to(room, count_parts(flat, order, settings), flat)
     splits = np.split(parts, np.cumsum([mesh.segments for mesh in meshes])[:-1])
     return [mesh.subdivide(own) for mesh, own in zip(meshes, splits, strict=True)]
 
 
-def _parts(errors: Array, order: int, settings: Refinement) -> NDArray[np.int_]:
-    wanted = np.ceil((errors / (KAPPA * settings.tolerance)) ** (1.0 / order))
-    return np.clip(wanted, 2, settings.max_subdivisions).astype(int)
+def count_parts(errors: Array, order: int | Counts, settings: Refinement) -> Counts:
+    """The number of parts of each segment, one where the error is within the tolerance.
+
+    A segment of error e gets ceil((e / (kappa * tolerance))^(1 / order)) parts, two at the least
+    and ``settings.max_subdivisions`` at the most; an error that is not a number counts as the
+    largest. ``order`` is one number, or one for each segment.
+    """
+    certain = largest_if_unknown(errors)
+    wanted = np.ceil((certain / (KAPPA * settings.tolerance)) ** (1.0 / order))
+    parts = np.clip(wanted, 2, settings.max_subdivisions).astype(int)
+    return np.where(certain > settings.tolerance, parts, 1)
+
+
+def keep_to(room: int, parts: Counts, errors: Array) -> Counts:
+    """Parts that add ``room`` segments at the most: else the worst are halved, as many as fit."""
+    if np.sum(parts - 1) <= room:
+        return parts
+    cut = np.flatnonzero(parts > 1)
+    worst = cut[np.argsort(-largest_if_unknown(errors)[cut], kind="stable")]
+    halved = np.ones_like(parts)
+    halved[worst[: max(room, 0)]] = 2
+    return halved
+
+
+def largest_if_unknown(errors: Array) -> Array:
+    """The errors with infinity in place of what is not a number."""
+    return np.nan_to_num(errors, nan=np.inf, posinf=np.inf)

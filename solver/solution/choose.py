@@ -2,11 +2,24 @@
 
 from collections.abc import Sequence
 
+from schemas.problem import Problem
 from solver.backends import NlpStatus
 from solver.solve_mesh import SolvedMesh
 
 
-def choose(solved: Sequence[SolvedMesh]) -> SolvedMesh:
-    """The mesh to publish: the last, or the optimum before it where the last came to nothing."""
+def settled(problem: Problem, mesh: SolvedMesh) -> bool:
+    """Whether a mesh is optimal and, where that was asked for, fine enough."""
+    settings = problem.refinement
+    return mesh.optimal and (settings is None or mesh.max_error <= settings.tolerance)
+
+
+def choose(problem: Problem, solved: Sequence[SolvedMesh]) -> SolvedMesh:
+    """The mesh to publish: the last that is fine enough; else the last that came to something."""
     told = (NlpStatus.OPTIMAL, NlpStatus.ACCEPTABLE)
-    return solved[-1] if solved[-1].outcome.status in told or len(solved) == 1 else solved[-2]
+    for good in (
+        [mesh for mesh in solved if settled(problem, mesh)],
+        [mesh for mesh in solved[-2:] if mesh.outcome.status in told],
+    ):
+        if good:
+            return good[-1]
+    return solved[-1] if len(solved) == 1 else solved[-2]

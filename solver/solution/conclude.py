@@ -23,7 +23,7 @@ from schemas.results import (
 from solver.backends import NlpStatus
 from solver.nlp.residuals import RowResidual
 from solver.run import Run
-from solver.solution.choose import choose
+from solver.solution.choose import choose, settled
 from solver.solution.words import advice, message, warnings
 from solver.solve_mesh import SolvedMesh
 
@@ -44,7 +44,7 @@ def conclude(
     problem: Problem, solved: Sequence[SolvedMesh], certificate: Certificate, run: Run
 ) -> Solution:
     """The solution of a finished run."""
-    chosen = choose(solved)
+    chosen = choose(problem, solved)
     status = _status(problem, solved, certificate)
     return _solution(problem, solved, chosen, certificate, status, run)
 
@@ -52,7 +52,7 @@ def conclude(
 def snapshot(problem: Problem, solved: Sequence[SolvedMesh], run: Run) -> Solution:
     """An uncertified solution of a run that goes on; what is served if it is killed."""
     unchecked = Certificate(verdict="not_checked", checks=[])
-    chosen = choose(solved)
+    chosen = choose(problem, solved)
     return _solution(problem, solved, chosen, unchecked, SolutionStatus.CANCELLED, run)
 
 
@@ -66,12 +66,14 @@ def _status(
 
     Where a finer mesh finds nothing, there is the optimum before it: its mesh is the limit.
     """
-    last = solved[-1]
-    if not last.optimal:
+    last, chosen = solved[-1], choose(problem, solved)
+    if not settled(problem, chosen):
+        if last.optimal:
+            return SolutionStatus.MESH_LIMIT
         lost = len(solved) > 1 and last.outcome.status not in _ENDED
         return SolutionStatus.MESH_LIMIT if lost else _STATUS[last.outcome.status]
-    if problem.refinement is not None and not last.max_error <= problem.refinement.tolerance:
-        return SolutionStatus.MESH_LIMIT
+    if last is not chosen and last.outcome.status in _ENDED[:2]:
+        return _STATUS[last.outcome.status]
     if certificate.verdict != "certified":
         return SolutionStatus.CERTIFICATE_FAILED
     return SolutionStatus.CONVERGED
@@ -90,9 +92,10 @@ def _solution(
         name=problem.name,
         status=status,
         objective=finite(chosen.objective),
-        message=message(status, solved, certificate),
+        message=message(problem, status, solved, certificate),
         advice=advice(problem, status, chosen.phases, residuals, certificate),
         warnings=warnings(problem, chosen.redundancy),
+        static={name: finite(value) for name, value in chosen.statics.items()},
         phases=chosen.phases,
         mesh_refinement=_history(problem, solved),
         certificate=certificate,
@@ -111,11 +114,10 @@ def _solution(
 
 
 def _history(problem: Problem, solved: Sequence[SolvedMesh]) -> MeshRefinement:
-    settings, last = problem.refinement, solved[-1]
-    tolerance = settings.tolerance if settings else None
+    settings = problem.refinement
     return MeshRefinement(
-        tolerance=tolerance,
-        converged=last.optimal and (tolerance is None or last.max_error <= tolerance),
+        tolerance=settings.tolerance if settings else None,
+        converged=settled(problem, choose(problem, solved)),
         iterations=[_mesh(mesh) for mesh in solved],
     )
 
@@ -135,6 +137,8 @@ def _mesh(mesh: SolvedMesh) -> MeshIteration:
         nlp_iterations=mesh.outcome.iterations,
         seconds=mesh.seconds,
         status=mesh.outcome.status,
+        degrees=[int(n) for one in mesh.setting.meshes if one.degrees is not None for n in one.degrees],
+        switches=list(mesh.switches),
     )
 
 

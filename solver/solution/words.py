@@ -59,13 +59,15 @@ _OVERSHOOT = (
 )
 
 
-def message(status: SolutionStatus, solved: Sequence[SolvedMesh], certificate: Certificate) -> str:
+def message(
+    problem: Problem, status: SolutionStatus, solved: Sequence[SolvedMesh], certificate: Certificate
+) -> str:
     """One or two sentences on how the solve ended."""
     text = _MESSAGES[status]
     if status is SolutionStatus.CERTIFICATE_FAILED:
         names = ", ".join(row.name for row in certificate.checks if row.judged and not row.passed)
         text += f" Failed: {names}."
-    if choose(solved) is not solved[-1]:
+    if choose(problem, solved) is not solved[-1]:
         before, after = (sum(map(len, mesh.errors)) for mesh in solved[-2:])
         ended = solved[-1].outcome.status.replace("_", " ")
         text += f" This is the optimum on {before} segments; on {after} it ended: {ended}."
@@ -103,7 +105,7 @@ def _saturated(problem: Problem, phases: Sequence[PhaseResult]) -> Iterator[str]
     """The controls that sit on their bounds for most of the nodes."""
     for spec, phase in zip(problem.phases, phases, strict=True):
         constants = resolve.parameters(spec.system)
-        for name in spec.system.controls:
+        for name in spec.system.control_names:
             limits = np.array(resolve.interval(spec.bounds.get(name), constants))
             values = np.array(phase.groups["controls"].values[name], dtype=float)
             near = np.abs(values[:, None] - limits) <= _ON_BOUND * (1 + np.abs(limits))
@@ -137,8 +139,8 @@ def _expressions(problem: Problem) -> Iterator[tuple[str, Expression]]:
     for phase in problem.phases:
         for name, expression in phase.system.define.items():
             yield name, expression
-        for name, expression in phase.system.derivatives.items():
-            yield f"derivative of {name}", expression
+        for _, name, expression in phase.system.equations():
+            yield name, expression
         for name, expression in phase.integrals.items():
             yield f"integral {name}", expression
         for row in [*phase.path, *phase.boundary]:

@@ -1,7 +1,7 @@
 """From the model to the program and back: what all transcriptions share."""
 
 from solver.transcribe.costates import with_costates
-from solver.transcribe.extract import extract
+from solver.transcribe.extract import Extracted, extract
 from solver.transcribe.transcribe import Setting, Transcribed, transcribe
 
-__all__ = ["Setting", "Transcribed", "extract", "transcribe", "with_costates"]
+__all__ = ["Extracted", "Setting", "Transcribed", "extract", "transcribe", "with_costates"]

@@ -20,7 +20,10 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class _Nodes:
-    """A strip at all nodes of its segments: x, f, u, z (segments, nodes, names); its integrals."""
+    """A strip at all nodes of its segments: x, f, u, z (segments, nodes, names).
+
+    ``integrals`` (integrals, segments) are the shares of each segment.
+    """
 
     x: Array
     f: Array
@@ -29,20 +32,34 @@ class _Nodes:
     integrals: Array
 
 
-def extract(
-    transcribed: Transcribed, w: Array
-) -> tuple[list[Trajectory], list[PhaseResult]]:
+@dataclass(frozen=True, slots=True)
+class Extracted:
+    """One phase: its trajectory, its result, and ``sums`` (integrals, segments) of its method."""
+
+    trajectory: Trajectory
+    result: PhaseResult
+    sums: Array
+
+
+def extract(transcribed: Transcribed, w: Array) -> list[Extracted]:
     """Read the trajectories of all phases out of the decision variables ``w`` (SI)."""
-    trajectories, results = [], []
+    phases = []
     for index, layout in enumerate(transcribed.layouts):
         strips = [
             _evaluate(transcribed, index, number, w) for number in range(len(layout.strips))
         ]
         start, end = (_time(edge, w) for edge in (layout.start, layout.end))
-        trajectory = _trajectory(layout, strips, start, end)
-        trajectories.append(trajectory)
-        results.append(_result(layout, strips, trajectory))
-    return trajectories, results
+        trajectory, sums = _trajectory(layout, strips, start, end), _sums(layout, strips)
+        result = _result(layout, strips, trajectory, sums)
+        phases.append(Extracted(trajectory, result, sums))
+    return phases
+
+
+def _sums(layout: PhaseLayout, strips: Sequence[_Nodes]) -> Array:
+    sums = np.empty((len(layout.phase.integrals), layout.mesh.segments))
+    for strip, nodes in zip(layout.strips, strips, strict=True):
+        sums[:, strip.where] = nodes.integrals
+    return sums
 
 
 def _time(edge: Edge, w: Array) -> float:
@@ -60,7 +77,7 @@ def _evaluate(transcribed: Transcribed, phase: int, number: int, w: Array) -> _N
         return np.moveaxis(matrix.reshape(len(matrix), segments, count), 0, 2)
 
     *series, integrals = (output.full() for output in outputs)
-    return _Nodes(*(turned(matrix) for matrix in series), integrals.sum(axis=1))
+    return _Nodes(*(turned(matrix) for matrix in series), integrals)
 
 
 def _trajectory(
@@ -114,22 +131,21 @@ def _merged(layout: PhaseLayout, parts: Sequence[Array]) -> Array:
 
 
 def _result(
-    layout: PhaseLayout, strips: Sequence[_Nodes], trajectory: Trajectory
+    layout: PhaseLayout, strips: Sequence[_Nodes], trajectory: Trajectory, sums: Array
 ) -> PhaseResult:
     phase, duration = layout.phase, trajectory.end - trajectory.start
     table = _node_table(layout, strips, trajectory)
-    totals = np.sum([nodes.integrals for nodes in strips], axis=0)
     return PhaseResult(
         name=phase.name,
         knots=(trajectory.start + duration * layout.mesh.knots).tolist(),
-        groups={group: table(names) for group, names in phase.publish.items()},
+        groups={group: table(names) for group, names in phase.chain.publish.items()},
         curves={
             group: _curve_group(trajectory, names)
-            for group, names in phase.publish.items()
+            for group, names in phase.chain.publish.items()
             if names or group in ("states", "controls")
         },
         integrals={
-            name: finite(value) for name, value in zip(phase.integrals, totals, strict=True)
+            name: finite(value) for name, value in zip(phase.integrals, sums.sum(axis=1), strict=True)
         },
     )
 

@@ -160,8 +160,10 @@ def _segment_rows(layout: PhaseLayout, strip: Strip, stage: SymbolicStage) -> Ro
         parts.append(_path_rows(path, plain, values, where))
         if not node.state:
             parts.append(_bound_rows(layout, layout.phase.states, point.x, where))
-        if not node.control and transcription.native:
-            parts.append(_bound_rows(layout, layout.phase.controls, point.u, where))
+    middle = strip.fractions(np.array([0.5])).T
+    parts += [
+        _bound_rows(layout, layout.phase.controls, corner, middle) for corner in collocation.hull
+    ]
     return _stacked([part for part in parts if part.names] or parts[:1])
 
 

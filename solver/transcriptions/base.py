@@ -71,11 +71,15 @@ class Collocation:
         where the path constraints say it all.
     quadrature
         Weights and points whose weighted sum, times h, integrates along the segment.
+    hull
+        Controls (n_u,) whose bounds, with those at the knots, keep the whole curve within them;
+        of methods whose controls would pass their bounds between the nodes.
     """
 
     points: tuple[Point, ...]
     defects: SX
     quadrature: tuple[tuple[float, Point], ...]
+    hull: tuple[SX, ...] = ()
 
 
 class Transcription(ABC):

@@ -42,7 +42,8 @@ class DirCol5i(Transcription):
             _at(node, point, position, control, h)
             for node, point in zip(self.nodes, segment.points, strict=True)
         )
-        return Collocation(points, SX(0, 1), self.weighted(points))
+        hull = _hull(*_halves(a.u), *_halves(b.u), h)
+        return Collocation(points, SX(0, 1), self.weighted(points), hull)
 
     def state_curve(self, x: Array, f: Array, h: Array) -> Array:
         """The splines, their first and their second derivatives."""
@@ -107,6 +108,17 @@ def _cubic(u0: Any, r0: Any, u1: Any, r1: Any, h: Any) -> list[Any]:
     """Coefficients in s of the cubic with these values and slopes."""
     rise = u1 - u0
     return [u0, h * r0, 3 * rise - h * (2 * r0 + r1), h * (r0 + r1) - 2 * rise]
+
+
+def _hull(u0: SX, r0: SX, u1: SX, r1: SX, h: SX) -> tuple[SX, ...]:
+    """The inner Bernstein coefficients of the control and of its rate.
+
+    A polynomial lies within the range of its Bernstein coefficients: where these keep their
+    bounds, a cubic that saturates does not pass them between the points.
+    """
+    first, second = u0 + h * r0 / 3, u1 - h * r1 / 3
+    middle = 3 * (second - first) / h
+    return ca.vertcat(first, middle), ca.vertcat(second, middle)
 
 
 def _thirds(x: SX) -> list[int]:

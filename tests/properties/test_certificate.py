@@ -11,6 +11,7 @@ from numpy.polynomial import Polynomial, polynomial
 from schemas.problem import Problem
 from schemas.results import PhaseResult
 from solver.certificate import certify
+from solver.lowering import lower
 from solver.refinement.error import segment_errors
 from tests.support.exact import altered, block_problem, block_result, result
 
@@ -118,4 +119,4 @@ def test_garbage_is_judged_and_never_raises(data: st.DataObject) -> None:
         boundary=[{"name": "gain", "expression": "final.x/initial.x", "lower": 1}],
     )
     assert certify(problem, [published], 12.0).verdict == "not_certified"
-    assert segment_errors(problem.phases[0], published).shape == (2,)
+    assert segment_errors(lower(problem)[0], published, {}).shape == (2,)

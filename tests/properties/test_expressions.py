@@ -10,13 +10,15 @@ from schemas.expressions import FUNCTIONS, ExpressionError, constant, names_in, 
 from schemas.expressions.constant import FLOATS
 from schemas.expressions.tokens import MAX_CONSTANT
 
-NAMES = {"x": 0.7, "y": -1.3, "final.q": 2.5}
+NAMES = {"x": 0.7, "y": -1.3, "final.q": 2.5, "initial.dd(q)": 0.3, "d(q)": -0.9}
 ENVIRONMENT: dict[str, Any] = {name: FLOATS[name] for name in FUNCTIONS}
 ENVIRONMENT |= {
     "abs": math.fabs,
     "x": 0.7,
     "y": -1.3,
     "final_q": 2.5,
+    "initial_dd_q": 0.3,
+    "d_q": -0.9,
     "pi": math.pi,
     "__builtins__": {},
 }
@@ -45,6 +47,7 @@ formulas = st.recursive(leaves, _branches, max_leaves=25)
 def _by_python(text: str) -> float:
     """What Python makes of the text; NaN where that is no real number."""
     python = text.replace("^", "**").replace("final.q", "final_q")
+    python = python.replace("initial.dd(q)", "initial_dd_q").replace("d(q)", "d_q")
     try:
         value = eval(python, ENVIRONMENT)  # noqa: S307 - the text is this test's own
     except (ValueError, ZeroDivisionError, OverflowError, TypeError):
@@ -84,7 +87,7 @@ def test_names_stand_where_they_are_said_to(text: str) -> None:
         assert text[name.column - 1 :].startswith(name.name)
 
 
-@given(st.text() | st.text("xyqsinlog2.(),+-*/^ e0\n\t", max_size=200))
+@given(st.text() | st.text("xyqdsinlog2.(),+-*/^ e0\n\t", max_size=200))
 @settings(max_examples=500, deadline=None)
 def test_garbage_raises_nothing_but_its_own_error(text: str) -> None:
     error = _refusal(text)

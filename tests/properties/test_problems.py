@@ -9,10 +9,12 @@ from hypothesis import strategies as st
 
 from schemas.errors import BadProblem
 from schemas.reading import MAX_ISSUES, canonical, read_problem
-from tests.support.problems import cart_pole
+from tests.support.problems import cart_pole, hop
 
 words = st.sampled_from(
     ["q1", "q3", "t", "kind", "ode", "hermite_simpson", "linear", "constant", "points", "a b",
+     "closed_form", "second_order", "residual", "radau", "dircol5i", "multiple_shooting", "random",
+     "solution", "slack", "stance", "k", "d(y)", "dd(y)", "dddd(u)", "stance.final.d(tip)", "since",
      "1/0", "sin(", "m1", "final.q1", "effort", "[key]", "~/", "", "\ud800", "\u03c0"]
 )  # fmt: skip
 leaves = st.none() | st.booleans() | st.integers() | st.floats() | words | st.text(max_size=5)
@@ -39,7 +41,8 @@ def _at(document: Any, way: tuple[Any, ...]) -> Any:
 
 @st.composite
 def damaged(draw: st.DrawFn) -> Any:
-    document: Any = cart_pole()
+    sound = draw(st.sampled_from([cart_pole, hop]))
+    document: Any = sound()
     for _ in range(draw(st.integers(1, 3))):
         way = draw(st.sampled_from(list(_places(document))))
         if not way:
@@ -51,7 +54,7 @@ def damaged(draw: st.DrawFn) -> Any:
         elif action == "insert" and isinstance(parent, dict):
             parent[draw(words)] = draw(values)
         elif action == "swap":
-            parent[key] = _at(cart_pole(), draw(st.sampled_from(list(_places(cart_pole())))))
+            parent[key] = _at(sound(), draw(st.sampled_from(list(_places(sound())))))
         else:
             parent[key] = draw(values)
     return document

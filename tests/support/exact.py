@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from footfall.curves import Curves
 from schemas.problem import Problem
 from schemas.reading import read_problem
-from schemas.results import CurveGroup, PhaseResult
+from schemas.results import Certificate, CurveGroup, PhaseResult
 
 Array = NDArray[np.float64]
 Functions = Mapping[str, Callable[[Array], Array]]
@@ -87,3 +87,9 @@ def altered(
     coefficients = {**curve.coefficients, name: rows.tolist()}
     curves_ = {**published.curves, group: curve.model_copy(update={"coefficients": coefficients})}
     return published.model_copy(update={"curves": curves_})
+
+
+def failures(certificate: Certificate) -> dict[str, str | None]:
+    """The judged checks that failed, and where; there are some."""
+    assert certificate.verdict == "not_certified"
+    return {row.name: row.where for row in certificate.checks if row.judged and not row.passed}

@@ -48,9 +48,74 @@ def cart_pole() -> dict[str, Any]:
     }
 
 
-def changed(path: str, value: Any) -> dict[str, Any]:
-    """The cart-pole with the value at ``path``, parts apart by blanks, replaced."""
-    problem = cart_pole()
+def hop() -> dict[str, Any]:
+    """Stance (explicit), flight (closed form) and landing (residual), linked, with a static."""
+    return {
+        "name": "hop",
+        "static": {"k": {"bounds": [1, 100], "guess": "10*pi"}},
+        "phases": [
+            {
+                "name": "stance",
+                "system": {
+                    "kind": "second_order",
+                    "parameters": {"m": 1, "g": 10},
+                    "coordinates": ["x", "y"],
+                    "controls": ["u"],
+                    "define": {"tip": "y + sin(x)"},
+                    "accelerations": {"x": "u/m", "y": "k*(1 - y) - g - 0.1*d(y)"},
+                },
+                "time": {"initial": [0, 1], "duration": [0.1, 2]},
+                "bounds": {"y": [0, 1], "d(y)": [-9, 9], "d(u)": [-50, 50]},
+                "initial": {"x": 0, "d(y)": [-1, 0]},
+                "integrals": {"effort": "u^2 + dd(u)^2 + d(tip)^2"},
+            },
+            {
+                "name": "flight",
+                "system": {
+                    "kind": "closed_form",
+                    "parameters": {"g": 10},
+                    "define": {"since": "t - initial.t"},
+                    "states": {
+                        "h": "initial.h + initial.v*since - g*since^2/2",
+                        "v": "initial.v - g*since",
+                    },
+                },
+                "time": {"duration": [0.1, 1]},
+                "path": [{"name": "above", "expression": "h + 0*since", "lower": 0}],
+            },
+            {
+                "name": "landing",
+                "system": {
+                    "kind": "second_order",
+                    "coordinates": ["y"],
+                    "controls": ["f"],
+                    "residual": ["dd(y) - f + k*(y - 1)"],
+                },
+                "time": {"final": [0.5, 4]},
+                "method": {"kind": "dircol5i", "segments": 6},
+                "guess": {"kind": "constant", "values": {"y": 1}},
+            },
+        ],
+        "linkages": [
+            {"name": "rise", "expression": "stance.final.d(tip) - flight.initial.v", "lower": 0},
+            {"name": "touch", "expression": "flight.final.h - landing.initial.y", "upper": 0},
+        ],
+        "objective": {"minimize": "stance.effort + k + landing.final.dd(y)^2 + flight.duration"},
+        "method": {"kind": "radau", "segments": 5},
+        "guess": {"kind": "constant", "values": {"u": "m", "h": 1}},
+        "stages": [
+            {"objective": {"minimize": "0"}, "refinement": None},
+            {"objective": {"minimize": "stance.effort"}, "refinement": {}},
+        ],
+    }
+
+
+def changed(path: str, value: Any, problem: dict[str, Any] | None = None) -> dict[str, Any]:
+    """The problem, the cart-pole unless given, with the value at ``path`` replaced.
+
+    The parts of the path stand apart by blanks.
+    """
+    problem = cart_pole() if problem is None else problem
     *way, last = (int(part) if part.isdigit() else part for part in path.split())
     place: Any = problem
     for part in way:

@@ -5,8 +5,8 @@ import sys
 from store.settings import StoreSettings
 from tests.support import engines
 from worker import logs
+from worker.attempt import Engine, Render
 from worker.main import run_worker
-from worker.run import Engine, Render
 from worker.settings import WorkerSettings
 
 

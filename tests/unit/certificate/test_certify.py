@@ -38,8 +38,10 @@ def test_every_check_has_its_row() -> None:
         bounds={"v": [-2, 2], "u": [-7, 7]},
         path=[{"name": "room", "expression": "x", "lower": -0.1, "upper": 1.1}],
         boundary=[{"name": "gain", "expression": "final.x - initial.x", "lower": 1}],
+        linkages=[{"name": "far", "expression": "move.final.x - goal", "lower": 0}],
+        static={"goal": {"bounds": [0, 1]}},
     )
-    certificate = certify(problem, [block_result()], 12.0)
+    certificate = certify(problem, [block_result()], 12.0, statics={"goal": 1.0})
     assert certificate.verdict == "certified"
     assert len(certificate.checks) == len(CHECKS)
     assert len(set(names(certificate))) == len(CHECKS)
@@ -132,7 +134,7 @@ def test_it_judges_by_other_means_than_the_solver() -> None:
                 queue.append(target)
             foreign.add(name.split(".")[0])
     rooms = {path.relative_to(ROOT).parts[1] for path in seen}
-    assert rooms == {"certificate", "numeric"}
+    assert rooms == {"certificate", "lowering", "numeric"}
     assert "casadi" not in foreign
 
 

@@ -8,16 +8,11 @@ import numpy as np
 import pytest
 
 from schemas.problem import Problem
-from schemas.results import Certificate, PhaseResult
+from schemas.results import PhaseResult
 from solver.certificate import certify
-from tests.support.exact import altered, block_problem, block_result, result
+from tests.support.exact import altered, block_problem, block_result, failures, result
 
 Array = np.ndarray
-
-
-def failures(certificate: Certificate) -> dict[str, str | None]:
-    assert certificate.verdict == "not_certified"
-    return {row.name: row.where for row in certificate.checks if row.judged and not row.passed}
 
 
 def add(segment: int, term: int, amount: float) -> Callable[[Array], Array]:
@@ -174,8 +169,8 @@ def stretched(published: PhaseResult) -> PhaseResult:
     ("published", "reason"),
     [
         ([], "phase move has no result"),
-        ([without(block_result(), "controls")], "there are no curves of the controls"),
-        ([without(block_result(), "states", "v")], "the states have no curve of v"),
+        ([without(block_result(), "controls")], "there is no curve of u"),
+        ([without(block_result(), "states", "v")], "there is no curve of v"),
         ([altered(block_result(), "states", "x", lambda rows: rows[1:])], "cannot be read"),
         ([stretched(block_result())], "same span"),
     ],

@@ -6,12 +6,13 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from solver.lowering import lower
 from solver.numeric import PhaseCurves, Samples, gauss, integrate
 from tests.support.exact import block_problem, block_result
 
 
 def block(segments: int = 3) -> PhaseCurves:
-    return PhaseCurves.read(block_problem().phases[0], block_result(segments))
+    return PhaseCurves.read(lower(block_problem())[0], block_result(segments))
 
 
 @pytest.mark.parametrize("panels", [1, 2, 5])

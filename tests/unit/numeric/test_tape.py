@@ -50,13 +50,20 @@ def test_intermediates_are_shared_and_those_not_used_leave_no_steps() -> None:
     definitions = {
         "unused": parse("exp(x)"),
         "s": parse("sin(x)"),
-        "d": parse("1 + s*s"),
+        "den": parse("1 + s*s"),
     }
-    tape = record([parse("d/s"), parse("d")], Scope(["x"], {}, definitions))
+    tape = record([parse("den/s"), parse("den")], Scope(["x"], {}, definitions))
     assert len(tape.steps) == 4  # sin, *, 1 +, /
     x = np.linspace(0.1, 2, 5)
-    d = 1 + np.sin(x) ** 2
-    assert tape([x], (5,)) == pytest.approx(np.stack([d / np.sin(x), d]))
+    den = 1 + np.sin(x) ** 2
+    assert tape([x], (5,)) == pytest.approx(np.stack([den / np.sin(x), den]))
+
+
+def test_a_chain_of_intermediates_may_be_longer_than_pythons_stack() -> None:
+    definitions = {"n0": parse("x")}
+    definitions |= {f"n{k}": parse(f"n{k - 1} + 1") for k in range(1, 3000)}
+    tape = record([parse("n2999")], Scope(["x"], {}, definitions))
+    assert tape([np.zeros(2)], (2,)).tolist() == [[2999.0, 2999.0]]
 
 
 def test_what_is_constant_is_folded_and_fills_its_row() -> None:

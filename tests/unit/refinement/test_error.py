@@ -5,25 +5,32 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from schemas.phases import Phase
 from schemas.problem import Problem
+from solver.lowering import lower
+from solver.lowering.form import Form
 from solver.numeric import PhaseCurves, Samples, dynamics, integrate
 from solver.refinement.error import segment_errors
-from tests.support.exact import altered, block_problem, block_result, result
+from tests.support.exact import altered, block_problem, block_result, curves, result
+from tests.support.forms import form, unknowns
 
 
-def oscillator(damping: float = 0.0) -> Phase:
+def block() -> Form:
+    return lower(block_problem())[0]
+
+
+def oscillator(damping: float = 0.0) -> Form:
     system = {
         "kind": "ode",
         "states": ["x", "v"],
         "controls": [],
         "derivatives": {"x": "v", "v": f"-x - {damping}*abs(v)"},
     }
-    return Problem.model_validate({"phases": [{"system": system, "time": {"final": 6}}]}).phases[0]
+    phase = {"system": system, "time": {"final": 6}}
+    return lower(Problem.model_validate({"phases": [phase]}))[0]
 
 
 def test_an_exact_motion_has_no_error() -> None:
-    assert segment_errors(block_problem().phases[0], block_result()) == pytest.approx(0, abs=1e-15)
+    assert segment_errors(block(), block_result(), {}) == pytest.approx(0, abs=1e-15)
 
 
 def test_the_error_is_the_integral_of_the_defect_in_its_segment() -> None:
@@ -33,9 +40,7 @@ def test_the_error_is_the_integral_of_the_defect_in_its_segment() -> None:
         rows[2, 0] -= 0.3
         return rows
 
-    errors = segment_errors(
-        block_problem().phases[0], altered(block_result(), "controls", "u", off)
-    )
+    errors = segment_errors(block(), altered(block_result(), "controls", "u", off), {})
     assert errors == pytest.approx([0, 0, 0.3 * 0.25 / 2.5, 0], abs=1e-14)
 
 
@@ -45,7 +50,9 @@ def test_it_falls_with_the_segments_at_the_order_of_the_curves(degree: int) -> N
     counts = np.array([8, 16, 32])
     errors = [
         segment_errors(
-            oscillator(), result({"x": np.sin, "v": np.cos}, {}, np.linspace(0, 6, n + 1), degree)
+            oscillator(),
+            result({"x": np.sin, "v": np.cos}, {}, np.linspace(0, 6, n + 1), degree),
+            {},
         ).max()
         for n in counts
     ]
@@ -56,9 +63,9 @@ def test_it_falls_with_the_segments_at_the_order_of_the_curves(degree: int) -> N
 @pytest.mark.parametrize("degree", [2, 3])
 def test_the_stated_quadrature_is_within_two_percent(degree: int) -> None:
     """Of an adaptive one; the integrand has kinks wherever the defect changes its sign."""
-    phase = oscillator(damping=0.4)
+    damped = oscillator(damping=0.4)
     published = result({"x": np.sin, "v": np.cos}, {}, np.linspace(0, 6, 14), degree)
-    curves, f = PhaseCurves.read(phase, published), dynamics(phase.system)
+    curves, f = PhaseCurves.read(damped, published), dynamics(damped)
     slopes = curves.states.slopes()
 
     def defect_in(segment: int) -> Callable[[Samples], np.ndarray]:
@@ -75,11 +82,53 @@ def test_the_stated_quadrature_is_within_two_percent(degree: int) -> None:
     adaptive = [
         (integrate(curves, defect_in(k), 1e-9).value / scale).max() for k in range(curves.segments)
     ]
-    assert segment_errors(phase, published) == pytest.approx(adaptive, rel=0.02)
+    assert segment_errors(damped, published, {}) == pytest.approx(adaptive, rel=0.02)
 
 
 def test_dynamics_without_a_value_are_nan_in_their_segments_only() -> None:
     document = block_problem().model_dump(mode="json")
     document["phases"][0]["system"]["derivatives"]["v"] = "u + 0*sqrt(0.5 - x)"
-    phase = Problem.model_validate(document).phases[0]
-    assert np.isnan(segment_errors(phase, block_result())).tolist() == [False, False, True, True]
+    rooted = lower(Problem.model_validate(document))[0]
+    assert np.isnan(segment_errors(rooted, block_result(), {})).tolist() == [
+        False,
+        False,
+        True,
+        True,
+    ]
+
+
+def test_an_implicit_system_has_the_error_of_its_accelerations() -> None:
+    """However the residual is scaled: it is that of the system written with its accelerations."""
+    published = result({"q": np.sin, "d(q)": np.cos}, {}, np.linspace(0, 6, 9), 3)
+    plain = form({"q": "d(q)", "d(q)": "-q - 0.1*d(q)"})
+    expected = segment_errors(plain, published, {})
+    assert expected.min() > 1e-3
+    for scale in ("1", "1e4", "exp(3*q)"):
+        group = unknowns(["dd(q)"], f"{scale}*(dd(q) + q + 0.1*d(q))")
+        implicit = form({"q": "d(q)", "d(q)": "dd(q)"}, unknowns=(group,))
+        assert segment_errors(implicit, published, {}) == pytest.approx(expected, rel=1e-9)
+
+
+def test_statics_are_part_of_the_dynamics() -> None:
+    published = result({"x": lambda t: 2 * t}, {}, np.array([0.0, 1.0, 3.0]), 1)
+    moving = form({"x": "speed"})
+    assert segment_errors(moving, published, {"speed": 2.0}) == pytest.approx(0, abs=1e-14)
+    assert segment_errors(moving, published, {"speed": 1.5}) == pytest.approx([0.5 / 7, 1.0 / 7])
+
+
+def test_a_control_whose_rate_is_used_has_an_error_of_its_own() -> None:
+    breaks = np.linspace(0.0, 1.0, 5)
+    published = result({"x": lambda t: t**2}, {"u": lambda t: 2 * t}, breaks)
+    rates = curves({"d(u)": lambda t: np.where(t < 0.5, 2.0, 2.3)}, breaks, 0)
+    published = published.model_copy(update={"curves": {**published.curves, "rates": rates}})
+    chain = form({"x": "u", "u": "d(u)"}, ["d(u)"])
+    off = 0.3 * 0.25 / 3
+    assert segment_errors(chain, published, {}) == pytest.approx([0, 0, off, off], abs=1e-14)
+
+
+def test_a_closed_form_is_off_by_its_distance_from_the_formula() -> None:
+    fall = form({}, flow={"x": "initial.x + rate*(t^2 - initial.t^2)"})
+    exact = result({"x": lambda t: 7 + t**2}, {}, np.array([1.0, 2.0, 4.0]), 2)
+    assert segment_errors(fall, exact, {"rate": 1.0}) == pytest.approx(0, abs=1e-14)
+    steep = segment_errors(fall, exact, {"rate": 1.1})
+    assert steep == pytest.approx([0.1 * 3 / 24, 0.1 * 15 / 24])

@@ -7,6 +7,7 @@ import pytest
 from schemas.checks.names import RESERVED
 from schemas.errors import Issue
 from schemas.reading import read_problem
+from schemas.values import Bound
 from tests.support.problems import PHASE, SYSTEM, cart_pole, changed, issues
 
 
@@ -55,7 +56,12 @@ def test_a_name_is_taken_once(path: str, value: Any, pointer: str, message: str)
         (f"{PHASE} integrals effort", "effort", "integrals/effort", 1, "an integral"),
         (f"{PHASE} boundary 0 expression", "q1", "boundary/0/expression", 1, "initial.q1 or"),
         (f"{PHASE} boundary 0 expression", "2*t", "boundary/0/expression", 3, "final.t"),
-        (f"{PHASE} boundary 0 expression", "den", "boundary/0/expression", 1, "along the phase"),
+        (f"{PHASE} boundary 0 expression", "den", "boundary/0/expression", 1, "initial.den or"),
+        (f"{PHASE} boundary 0 expression", "d(q1)", "boundary/0/expression", 1, "initial.d(q1)"),
+        (f"{PHASE} path 0 expression", "d(m1)", "path/0/expression", 1, "has no derivatives"),
+        (f"{PHASE} path 0 expression", "d(t)", "path/0/expression", 1, "has no derivatives"),
+        (f"{PHASE} path 0 expression", "2*d(qq1)", "path/0/expression", 3, "mean 'd(q1)'?"),
+        (f"{PHASE} path 0 expression", "d*q1", "path/0/expression", 1, "write d(x)"),
         (f"{PHASE} boundary 0 expression", "final.q3", "boundary/0/expression", 1, "final.q"),
     ],
 )
@@ -69,7 +75,8 @@ def test_unknown_names(path: str, value: str, pointer: str, column: int, hint: s
 
 @pytest.mark.parametrize(
     "text",
-    ["effort", "swing_up.effort", "duration", "swing_up.duration", "final.t - initial.t", "m1*2",
+    ["final.den", "initial.d(den) + swing_up.final.dddd(q1)",
+     "effort", "swing_up.effort", "duration", "swing_up.duration", "final.t - initial.t", "m1*2",
      "swing_up.final.q1^2", "initial.u"],
 )  # fmt: skip
 def test_the_objective_sees_the_ends_with_and_without_the_phase(text: str) -> None:
@@ -97,6 +104,8 @@ def test_derivatives_fit_the_states() -> None:
         (f"{PHASE} bounds q3", 1, "bounds/q3", "not a state or a control"),
         (f"{PHASE} bounds t", 1, "bounds/t", "not a state or a control"),
         (f"{PHASE} final den", 1, "final/den", "not a state or a control"),
+        (f"{PHASE} bounds d(den)", 1, "bounds/d(den)", "not a state or a control"),
+        (f"{PHASE} bounds d(q1)", [2, 1], "bounds/d(q1)", "the lower limit 2 is above the upper"),
         (f"{PHASE} bounds q1", [2, 1], "bounds/q1", "the lower limit 2 is above the upper"),
         (f"{PHASE} bounds q1", ["m1", "g - m3"], "bounds/q1/1", "'m3' is not a constant"),
         (f"{PHASE} bounds q1", ["q2", 9], "bounds/q1/0", "'q2' is not a constant"),
@@ -123,7 +132,7 @@ def test_values(path: str, value: Any, pointer: str, message: str) -> None:
 )
 def test_times_that_can_last(initial: Any, final: Any) -> None:
     problem = changed(f"{PHASE} time", {"initial": initial, "final": final})
-    assert read_problem(problem).phases[0].time.final.dump() == final
+    assert read_problem(problem).phases[0].time.final == Bound.read(final)
 
 
 def test_a_broken_parameter_is_blamed_once() -> None:

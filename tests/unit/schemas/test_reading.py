@@ -9,6 +9,7 @@ import pytest
 
 from schemas.expressions import Expression
 from schemas.limits import MODEL_LIMITS
+from schemas.problem import Problem
 from schemas.reading import MAX_ISSUES, canonical, read_problem, spec_sha256
 from tests.support.problems import PHASE, SYSTEM, cart_pole, changed, issues
 
@@ -109,7 +110,14 @@ def test_data_that_no_json_has() -> None:
         (f"{PHASE} objective", {}, "/phases/0/objective", "unknown", "the problem itself"),
         (f"{PHASE} time", [0, 1], "/phases/0/time", "got a list", "initial, final"),
         (f"{PHASE} initial", [0, 0], "/phases/0/initial", "got a list", "each under its name"),
-        (f"{PHASE} time final", None, "/phases/0/time/final", "[lower, upper]", "[0, null]"),
+        (
+            f"{PHASE} time",
+            {"final": None},
+            "/phases/0/time",
+            "give 'final', 'duration' or both",
+            "",
+        ),
+        (f"{PHASE} time initial", {}, "/phases/0/time/initial", "[lower, upper]", "[0, null]"),
         (f"{SYSTEM} states", "q1", "/phases/0/system/states", "got a text", "in brackets"),
         ("method form", "seperated", "/method/form", "'seperated' is none of", "'separated'"),
         ("guess kind", "point", "/guess/kind", "none of", "did you mean 'points'?"),
@@ -118,7 +126,7 @@ def test_data_that_no_json_has() -> None:
         ("refinement tolerance", None, "/refinement/tolerance", "expected a number", ""),
         ("phases", [], "/phases", "at least 1 item", ""),
         ("phases", {}, "/phases", "expected a list", ""),
-        (f"{PHASE} time", {}, "/phases/0/time/final", "'final' is missing", ""),
+        (f"{PHASE} time", {}, "/phases/0/time", "give 'final', 'duration' or both", ""),
         (f"{PHASE} name", "a b", "/phases/0/name", "'a b' is not a name", "a letter"),
         ("name", "two\nlines", "/name", "one line", ""),
         (f"{PHASE} bounds u", [1], "/phases/0/bounds/u", "a pair [lower, upper]", ""),
@@ -126,7 +134,27 @@ def test_data_that_no_json_has() -> None:
         (f"{PHASE} bounds", {"a b": 1}, "/phases/0/bounds/a b", "is not a name", ""),
         (f"{PHASE} path 0 upper", True, "/phases/0/path/0/upper", "expected a number", ""),
         (f"{PHASE} path", [{"name": "a", "expression": 1}], "/phases/0/path/0", "'lower'", ""),
-        (f"{SYSTEM} kind", "odes", "/phases/0/system/kind", "expected 'ode'", "'ode'"),
+        (f"{PHASE} bounds", {"d(x^2)": 1}, "/phases/0/bounds/d(x^2)", "is not a name", "dddd(x)"),
+        (f"{SYSTEM} kind", "odes", "/phases/0/system/kind", "'odes' is none of", "'ode'"),
+        (
+            f"{SYSTEM}",
+            {"kind": "library", "name": "x"},
+            "/phases/0/system",
+            "'library' is",
+            "write it out",
+        ),
+        ("guess", {"from_job": "x"}, "/guess", "'from_job' is", "write it out"),
+        (f"{PHASE} guess", {"from_job": "x"}, "/phases/0/guess", "'from_job' is", "write it out"),
+        (f"{PHASE} guess", {"kind": "linea"}, "/phases/0/guess/kind", "none of", "'linear'"),
+        (f"{PHASE} method", {"kind": "radau", "x": 1}, "/phases/0/method/x", "unknown field", ""),
+        ("nonsmooth", {"abs": "slak"}, "/nonsmooth/abs", "expected 'slack'", "'slack'"),
+        ("nonsmooth", {"abs": 3}, "/nonsmooth/abs", "expected an object", "tanh, sqrt"),
+        ("nonsmooth", {"abs": {"tan": 1}}, "/nonsmooth/abs/tan", "unknown field", "'tanh'"),
+        ("nonsmooth", {"abs": {"tanh": 0}}, "/nonsmooth/abs/tanh", "greater than 0", ""),
+        ("nonsmooth", {"abs": {"tanh": 1, "sqrt": 1}}, "/nonsmooth/abs", "either 'tanh' or", ""),
+        ("static", {"k": 3}, "/static/k", "expected an object", "bounds, guess"),
+        ("stages", {}, "/stages", "expected a list", ""),
+        ("accelerations", {}, "/accelerations", "unknown field", "a phase's 'system'"),
         (f"{SYSTEM} states 1", "2q", "/phases/0/system/states/1", "'2q' is not a name", ""),
         (
             f"{SYSTEM} states",
@@ -192,3 +220,12 @@ def test_too_much_of_everything() -> None:
     define = {f"z{i}": "+".join(["q1"] * 1000) for i in range(21)}
     (issue,) = issues(changed(f"{SYSTEM} define", define))
     assert "'nodes'" in issue.message
+
+
+def test_the_published_schema_knows_what_the_edge_puts_in() -> None:
+    phase = Problem.model_json_schema()["$defs"]["Phase"]["properties"]
+    guesses = phase["guess"]["anyOf"][0]["oneOf"]
+    assert guesses[-1]["required"] == ["from_job"]
+    system = phase["system"]["oneOf"][-1]
+    assert system["properties"]["kind"] == {"const": "library"}
+    assert system["required"] == ["kind", "name"]

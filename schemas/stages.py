@@ -1,0 +1,98 @@
+"""Stages: merge patches on a problem (RFC 7396), each of which makes the next problem to solve.
+
+Three things go beyond the RFC. An object whose ``kind`` changes is replaced, for its fields were
+those of the other kind. In lists of named items, such as phases, an object patches items by their
+names. And ``refinement: null`` is a value, one mesh, and no removal.
+"""
+
+from collections.abc import Iterator
+from typing import Any
+
+from schemas.errors import Issue
+from schemas.pointers import Part, parts_of, pointer
+from schemas.problem import Problem
+
+_OF_THE_WHOLE = ("stages", "multistart", "limits", "known")
+"""Fields that say something about all stages together."""
+
+
+def apply_stage(problem: Problem, index: int) -> Problem:
+    """The problem of a stage: the patches up to its own applied, one after the other.
+
+    It has no stages itself, and from the second stage on no guess: the solution of the stage
+    before is one. ``problem`` was read, so its stages are good.
+    """
+    return Problem.model_validate(stage_document(problem, index))
+
+
+def stage_document(problem: Problem, index: int) -> dict[str, Any]:
+    """The stage's problem as JSON values, not checked."""
+    exclude: dict[str, Any] = {"stages": True}
+    if index > 0:
+        exclude |= {"guess": True, "phases": {"__all__": {"guess"}}}
+    document: dict[str, Any] = problem.model_dump(mode="json", exclude=exclude)
+    for patch in problem.stages[: index + 1]:
+        document = merged(document, patch)
+        if "refinement" in patch and patch["refinement"] is None:
+            document["refinement"] = None
+    return document
+
+
+def merged(target: Any, patch: Any) -> Any:
+    """The target with the patch applied; neither is changed."""
+    if not isinstance(patch, dict):
+        return patch
+    if isinstance(target, list) and all(isinstance(item, dict) for item in target):
+        named = {str(item.get("name")): item for item in target}
+        new = {name: {"name": name} for name in patch if name not in named}
+        return list(merged(new | named, patch).values())
+    kept = isinstance(target, dict) and _same_kind(target, patch)
+    result: dict[str, Any] = dict(target) if kept else {}
+    for key, value in patch.items():
+        if value is None:
+            result.pop(key, None)
+        else:
+            result[key] = merged(result.get(key), value)
+    return result
+
+
+def _same_kind(target: dict[str, Any], patch: dict[str, Any]) -> bool:
+    kinds = target.get("kind"), patch.get("kind")
+    return kinds[0] == kinds[1] or not all(isinstance(kind, str) for kind in kinds)
+
+
+def out_of_place(problem: Problem) -> Iterator[Issue]:
+    """Fields of patches that no stage has of its own."""
+    for index, patch in enumerate(problem.stages):
+        for field in _OF_THE_WHOLE:
+            if field in patch:
+                yield Issue(
+                    pointer("stages", index, field),
+                    f"'{field}' is one for all stages together",
+                    "give it beside 'stages'",
+                )
+        if index > 0 and "guess" in patch:
+            yield Issue(
+                pointer("stages", index, "guess"),
+                "a stage starts from the solution of the one before",
+                "give a guess to the first stage only, or to the problem",
+            )
+
+
+def blamed(issue: Issue, index: int, patch: dict[str, Any]) -> Issue:
+    """An issue of a stage's problem, at the place in the patch that comes nearest to it."""
+    parts: list[Part] = []
+    place: Any = patch
+    wanted = parts_of(issue.pointer)
+    for part in wanted:
+        if isinstance(place, list) and part.isdigit() and int(part) < len(place):
+            place = place[int(part)]
+        elif isinstance(place, dict) and part in place:
+            place = place[part]
+        else:
+            break
+        parts.append(part)
+    where = pointer("stages", index, *parts)
+    if len(parts) == len(wanted):
+        return Issue(where, issue.message, issue.hint, issue.column)
+    return Issue(where, f"with this stage, {issue.pointer}: {issue.message}", issue.hint)

@@ -1,0 +1,128 @@
+"""A portfolio: where one strategy fails, the next one is tried, and the result says which won."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from schemas.problem import SolverSettings
+from solver.backends import DEFAULT, FEASIBLE, Backend, NlpStatus, Outcome, Strategy, Watch
+from solver.backends.plugin import iterate_at
+from solver.nlp.elastic import elastic
+from solver.nlp.task import NlpTask
+
+STRATEGIES = (
+    Strategy("adaptive barrier", adaptive=True),
+    Strategy("rescaled", rescaled=True),
+)
+"""What is tried after the default, where the backend knows it; the elastic start comes last."""
+
+ELASTIC = "elastic start"
+
+_WORTH_ANOTHER = (
+    NlpStatus.INFEASIBLE,
+    NlpStatus.DIVERGED,
+    NlpStatus.ITERATION_LIMIT,
+    NlpStatus.INVALID_NUMBER,
+    NlpStatus.ACCEPTABLE,
+)
+_OVER = (NlpStatus.STOPPED, NlpStatus.TIME_LIMIT)
+
+
+@dataclass(frozen=True, slots=True)
+class Won:
+    """An outcome, the strategy that gave it, and how those before it ended."""
+
+    outcome: Outcome
+    strategy: str = DEFAULT.name
+    attempts: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Portfolio:
+    """What the attempts share.
+
+    Attributes
+    ----------
+    backend, settings
+        Who solves, and how long.
+    attempt
+        One solve of a task by a strategy, watched and judged as the caller does it.
+    watch
+        A new watch, for the elastic solve before the last attempt.
+    announce
+        Hears of each attempt before it begins.
+    """
+
+    backend: Backend
+    settings: SolverSettings
+    attempt: Callable[[NlpTask, Strategy], Outcome]
+    watch: Callable[[], Watch]
+    announce: Callable[[str], None]
+
+    def solve(self, task: NlpTask, first: Outcome) -> Won:
+        """Try the strategies in turn until one ends at an optimum.
+
+        ``first`` is the outcome of the default strategy. Where none does better, the best of all
+        is returned: the smallest violation until feasible, then the lowest objective.
+        """
+        won, attempts = Won(first), [_described(DEFAULT.name, first)]
+        for name, attempt in self._attempts(task):
+            if won.outcome.status not in _WORTH_ANOTHER:
+                break
+            self.announce(f"again, {name}")
+            outcome = attempt()
+            if outcome.status is NlpStatus.OPTIMAL or _better(outcome, won.outcome):
+                won = Won(outcome, name)
+            if outcome.status in _OVER:
+                # What was asked for counts, also where an earlier attempt came further.
+                won = replace(won, outcome=replace(won.outcome, status=outcome.status))
+            attempts.append(_described(name, outcome))
+        others = [line for line in attempts if not line.startswith(f"{won.strategy}: ")]
+        return replace(won, attempts=tuple(others))
+
+    def _attempts(self, task: NlpTask) -> Iterator[tuple[str, Callable[[], Outcome]]]:
+        for strategy in STRATEGIES:
+            if self.backend.offers(strategy):
+                yield strategy.name, partial(self.attempt, task, strategy)
+        if not self.backend.refusal(_all_rows(task)):
+            yield ELASTIC, partial(self._from_elastic, task)
+
+    def _from_elastic(self, task: NlpTask) -> Outcome:
+        """First the point that violates the least; where that is nothing, the optimum from it."""
+        watch = self.watch()
+        silent = Watch(watch.deadline, watch.should_stop, watch.report)
+        near = self.backend.solve(_all_rows(task), self.settings, silent, warm=False)
+        point = np.clip(near.point.z[: len(task.start)], task.lower, task.upper)
+        reached, over = iterate_at(task, point), near.status in _OVER
+        if over or reached.violation > FEASIBLE:
+            status = near.status if over else NlpStatus.INFEASIBLE
+            return Outcome(status, near.raw, reached, near.iterations, near.seconds)
+        outcome = self.attempt(replace(task, start=point), DEFAULT)
+        return replace(
+            outcome,
+            iterations=near.iterations + outcome.iterations,
+            seconds=near.seconds + outcome.seconds,
+        )
+
+
+def _all_rows(task: NlpTask) -> NlpTask:
+    """The task with all rows elastic, its bounds as they are."""
+    every = np.ones(len(task.row_lower), dtype=bool)
+    return elastic(task, every, np.zeros(len(task.start), dtype=bool)).task
+
+
+def _better(one: Outcome, other: Outcome) -> bool:
+    """Whether a failed attempt got further: closer to feasible, then lower, then accepted."""
+    if max(one.point.violation, other.point.violation) <= FEASIBLE:
+        accepted = [outcome.status is NlpStatus.ACCEPTABLE for outcome in (one, other)]
+        if accepted[0] != accepted[1]:
+            return accepted[0]
+    return one.point.better_than(other.point)
+
+
+def _described(name: str, outcome: Outcome) -> str:
+    """As in ``default: infeasible after 40 iterations``."""
+    ended = outcome.status.replace("_", " ")
+    return f"{name}: {ended} after {outcome.iterations} iterations"

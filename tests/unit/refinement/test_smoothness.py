@@ -1,0 +1,68 @@
+"""What published curves tell of smoothness."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from footfall.curves import Curves
+from schemas.results import CurveGroup, PhaseResult
+from solver.refinement.curves import decay, seams
+from solver.refinement.hp import SMOOTH
+
+Array = NDArray[np.float64]
+KNOTS = np.linspace(0.0, 2.0, 5)
+
+
+def result(
+    state: Callable[[Array], Array], control: Callable[[Array], Array], points: int
+) -> PhaseResult:
+    """A phase of four segments, both curves through ``points`` inner places of each."""
+    nodes = np.polynomial.chebyshev.chebpts1(points)
+    times = KNOTS[:-1, None] + np.diff(KNOTS)[:, None] * (nodes + 1) / 2
+    groups = {}
+    for group, name, function in (("states", "x", state), ("controls", "u", control)):
+        curves = Curves.through([name], KNOTS, nodes, function(times)[:, :, None])
+        groups[group] = CurveGroup.model_validate(curves.to_dict())
+    return PhaseResult(name="phase", knots=KNOTS.tolist(), groups={}, curves=groups)
+
+
+def test_the_decay_of_a_geometric_series() -> None:
+    def pole(t: Array) -> Array:
+        s = 4 * (t % 0.5) - 1
+        return np.asarray(1 / (1.25 - s))  # coefficients fall by 2 with every degree
+
+    rates = decay(result(pole, np.cos, 24), np.full(4, 23))
+    np.testing.assert_allclose(rates, np.log(2), rtol=0.02)
+
+
+def test_a_kink_is_rough_and_the_rest_is_smooth() -> None:
+    rates = decay(result(lambda t: np.abs(t - 0.7), np.cos, 7), np.full(4, 6))
+    assert rates[1] < SMOOTH
+    assert np.all(np.isinf(np.delete(rates, 1))), "a straight line has nothing above degree 1"
+
+
+def test_a_smooth_state_is_smooth_everywhere() -> None:
+    assert np.all(decay(result(np.sin, np.cos, 5), np.full(4, 4)) > SMOOTH)
+
+
+def test_only_the_segments_own_degree_counts() -> None:
+    curves = result(np.exp, np.cos, 9)
+    fine = decay(curves, np.full(4, 8))
+    np.testing.assert_allclose(decay(curves, np.full(4, 4)), fine, rtol=0.3)
+
+
+@pytest.mark.parametrize("points", [2, 4])
+def test_a_jump_of_the_control_is_a_seam(points: int) -> None:
+    def jump(t: Array) -> Array:
+        return np.where(t < 1.0, -1.0, 1.0)
+
+    apart = seams(result(np.sin, jump, points))
+    np.testing.assert_allclose(apart, [0, 1, 0], atol=1e-12)
+
+
+def test_smooth_controls_have_small_seams() -> None:
+    assert np.all(seams(result(np.sin, lambda t: 3 + 2 * t, 3)) < 1e-12)
+    assert np.all(seams(result(np.sin, np.cos, 6)) < 1e-3)
+    np.testing.assert_array_equal(seams(result(np.sin, np.ones_like, 3)), 0)
