@@ -10,18 +10,20 @@ from fastapi.middleware import Middleware
 
 from api import problems
 from api.context import Context, require_owner
+from api.ending import Cancellation
 from api.guards import BodyGuard, HeadAsGet, HostGuard
 from api.metrics import Metrics
 from api.observing import Observer
 from api.openapi import document, errors
-from api.routes import catalogue, events, health, job, jobs, pages, results
+from api.routes import catalogue, events, health, job, jobs, pages, results, sweep, sweeps
 from api.settings import ApiSettings
 from api.stopping import Stopper
 from schemas.problem import Problem
+from schemas.sweeps import SweepRequest
 from store.ports import Store
 
 _WAITERS = 64
-_OWNED = (jobs, job, results, events, catalogue)
+_OWNED = (jobs, job, results, events, sweeps, sweep, catalogue)
 _OPEN = (health, pages)
 
 
@@ -65,7 +67,7 @@ def create_app(store: Store, settings: ApiSettings) -> FastAPI:
         app.include_router(module.router, dependencies=guard, responses=errors(401, 503))
     for module in _OPEN:
         app.include_router(module.router)
-    app.openapi = document(app, [Problem, job.Cancellation, problems.ProblemDetail])  # type: ignore[method-assign]
+    app.openapi = document(app, [Problem, SweepRequest, Cancellation, problems.ProblemDetail])  # type: ignore[method-assign]
     return app
 
 

@@ -12,8 +12,8 @@ from fastapi.security import HTTPAuthorizationCredentials, HTTPBearer
 from api.metrics import Metrics
 from api.settings import ApiSettings
 from api.stopping import Stopper
-from schemas.errors import Unauthorized, UnknownJob
-from store.ports import JobRecord, Store
+from schemas.errors import Unauthorized, UnknownJob, UnknownSweep
+from store.ports import JobRecord, Store, SweepRecord
 
 LOCAL_OWNER = "local"
 JOB_ID = re.compile(r"[0-9a-f]{32}")
@@ -69,3 +69,17 @@ def _record(
 
 
 OwnJob = Annotated[JobRecord, Depends(_record)]
+
+
+def _sweep(
+    ctx: Ctx,
+    owner: Owner,
+    sweep_id: Annotated[str, Path(description="As the sweep's links name it.")],
+) -> SweepRecord:
+    """The caller's own sweep; a foreign one is unknown."""
+    if not JOB_ID.fullmatch(sweep_id):
+        raise UnknownSweep("There is no such sweep.", "An id is 32 characters of 0-9 and a-f.")
+    return ctx.store.sweeps.get(sweep_id, owner)
+
+
+OwnSweep = Annotated[SweepRecord, Depends(_sweep)]

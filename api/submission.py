@@ -9,12 +9,14 @@ from pydantic import BaseModel, Field
 
 from api.advice import warnings
 from api.context import Context
-from api.errors import KeyReused
-from schemas.errors import Conflict, QueueFull, RateLimited, UnknownJob
+from api.earlier import sources
+from api.once import Made, once
+from schemas.errors import QueueFull, RateLimited
+from schemas.inlining import inlined
 from schemas.jobs import JobStatus
 from schemas.problem import Limits, Problem
 from schemas.reading import canonical, read_problem, spec_sha256
-from store.ports import KEY_REUSED, JobRecord, Store
+from store.ports import JobRecord, Store
 
 
 class Validation(BaseModel):
@@ -45,9 +47,10 @@ class Draft:
         )
 
 
-def read(ctx: Context, body: bytes) -> Draft:
-    """Check a posted problem and cap what it asks for. Raises BadProblem."""
-    problem = read_problem(body)
+def read(ctx: Context, body: bytes, owner: str) -> Draft:
+    """Check a posted problem, put in what it names, cap what it asks for. Raises BadProblem."""
+    found = sources(ctx.store, owner)
+    problem = read_problem(body, lambda document: inlined(document, found))
     asked, caps = problem.limits, ctx.settings
     limits = Limits(
         seconds=min(asked.seconds, caps.max_seconds),
@@ -60,46 +63,21 @@ def read(ctx: Context, body: bytes) -> Draft:
 def submit(ctx: Context, draft: Draft, owner: str, key: str | None) -> tuple[JobRecord, bool]:
     """Store and queue a job; returns once it is on disk. True: the key's own job of before.
 
-    Raises Conflict or KeyReused (see the store's port), QueueFull, RateLimited, StoreUnavailable.
+    Raises Conflict or KeyReused (see ``once``), QueueFull, RateLimited, StoreUnavailable.
     """
-    store = ctx.store
-    if key is not None:
-        earlier = _begin(store, owner, key, draft.fingerprint)
-        if earlier is not None:
-            return _replay(ctx, earlier, owner), True
-    try:
-        _check_share(ctx, owner)
+
+    def make(made: Made) -> JobRecord:
+        check_share(ctx, owner)
         record = _create(ctx, draft, owner)
-        if key is not None:
-            # Before the queue: should that fail halfway, the repeated request finds this job.
-            store.idempotency.finish(owner, key, record.id)
-        _enqueue(store, record)
-    except (RateLimited, QueueFull):
-        if key is not None:
-            store.idempotency.abandon(owner, key)
-        raise
-    store.durable()
-    ctx.metrics.accepted()
-    return record, False
+        made(record.id)
+        _enqueue(ctx.store, record)
+        ctx.metrics.accepted()
+        return record
 
+    def find(job_id: str) -> JobRecord:
+        return ctx.store.jobs.get(job_id, owner)
 
-def _begin(store: Store, owner: str, key: str, fingerprint: str) -> str | None:
-    try:
-        return store.idempotency.begin(owner, key, fingerprint)
-    except Conflict as conflict:
-        if conflict.message == KEY_REUSED:
-            raise KeyReused("This key came before, with another body.", conflict.hint) from None
-        raise Conflict("A request with this key is still in flight.", conflict.hint) from None
-
-
-def _replay(ctx: Context, job_id: str, owner: str) -> JobRecord:
-    try:
-        record = ctx.store.jobs.get(job_id, owner)
-    except UnknownJob:
-        words = "The job that this idempotency key made was deleted."
-        raise Conflict(words, "Use a new key for a new job.") from None
-    ctx.store.durable()  # the first request may have failed at just this
-    return record
+    return once(ctx.store, (owner, key), draft.fingerprint, make, find)
 
 
 def _create(ctx: Context, draft: Draft, owner: str) -> JobRecord:
@@ -129,13 +107,13 @@ def _enqueue(store: Store, record: JobRecord) -> None:
         raise
 
 
-def _check_share(ctx: Context, owner: str) -> None:
+def check_share(ctx: Context, owner: str, more: int = 1) -> None:
     """One owner's waiting jobs are capped, so that none fills the queue for the rest."""
     cap = ctx.settings.max_waiting_jobs
-    if ctx.store.queue.length() < cap:  # then nobody has as many; most requests end here
+    if ctx.store.queue.length() + more <= cap:  # then nobody has as many; most requests end here
         return
     live = ctx.store.jobs.live()
     waiting = sum(job.owner == owner and job.status is JobStatus.QUEUED for job in live)
-    if waiting >= cap:
+    if waiting + more > cap:
         words = f"{waiting} of your jobs wait; at most {cap} may."
         raise RateLimited(words, "Wait for some to start, or cancel them.")

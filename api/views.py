@@ -6,7 +6,7 @@ from datetime import UTC, datetime
 import orjson
 from fastapi import Response
 
-from schemas.jobs import TERMINAL, Job, JobPage, JobStatus
+from schemas.jobs import TERMINAL, Job, JobKind, JobPage, JobStatus
 from store.ports import JobRecord, Page, Store
 
 
@@ -29,12 +29,13 @@ def _view(record: JobRecord, place: int | None) -> Job:
     return Job(
         id=record.id,
         name=record.name,
+        kind=record.kind,
         status=record.status,
         solution_status=record.solution_status,
         message=record.message,
-        created=_time(record.created),
-        started=None if record.started is None else _time(record.started),
-        finished=None if record.finished is None else _time(record.finished),
+        created=iso_time(record.created),
+        started=None if record.started is None else iso_time(record.started),
+        finished=None if record.finished is None else iso_time(record.finished),
         attempts=record.attempts,
         queue_position=place,
         progress=record.progress,
@@ -69,14 +70,16 @@ def matches(if_none_match: str | None, tag: str) -> bool:
 def _links(record: JobRecord) -> dict[str, str]:
     base = f"/v1/jobs/{record.id}"
     links = {"self": base, "events": f"{base}/events"}
-    if record.status in TERMINAL:
+    if record.kind is JobKind.SWEEP_CHUNK:
+        links["sweep"] = f"/v1/sweeps/{record.sweep}"
+    elif record.status in TERMINAL:
         links |= {name: f"{base}/{name}" for name in ("result", "trajectory", "report.html")}
-    else:
+    if record.status not in TERMINAL:
         links["cancel"] = f"{base}/cancel"
     return links
 
 
-def _time(seconds: float) -> str:
+def iso_time(seconds: float) -> str:
     """ISO 8601 in UTC, to the millisecond."""
     moment = datetime.fromtimestamp(seconds, UTC)
     return moment.isoformat(timespec="milliseconds").replace("+00:00", "Z")

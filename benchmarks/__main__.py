@@ -1,6 +1,28 @@
-"""All benchmarks in one run: ``make bench``."""
+"""All benchmarks in one run, or those that are named: ``python -m benchmarks [NAME ...]``."""
 
-from benchmarks import cart_pole, imports, service
+import argparse
+from importlib import import_module
 
-for benchmark in (cart_pole, service, imports):
-    benchmark.main()
+MODULES = {
+    "cart_pole": "benchmarks.cart_pole",
+    "service": "benchmarks.service",
+    "imports": "benchmarks.imports",
+    "aims": "benchmarks.aims",
+    "growth": "benchmarks.growth",
+    "peers": "benchmarks.peers.comparison",
+}
+
+
+def main() -> None:
+    """Run what the command line names."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
+    parser.add_argument("names", nargs="*", metavar="NAME", help=f"one of {', '.join(MODULES)}")
+    names = parser.parse_args().names
+    if unknown := [name for name in names if name not in MODULES]:
+        parser.error(f"no benchmark {', '.join(unknown)}; there are {', '.join(MODULES)}")
+    for name in names or MODULES:
+        import_module(MODULES[name]).main()
+
+
+if __name__ == "__main__":
+    main()

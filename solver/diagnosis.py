@@ -126,7 +126,7 @@ def _pointer(problem: Problem, label: RowLabel) -> str:
 
 def _equations(phase: PhaseSpec) -> dict[str, str]:
     """The rows that come of each equation of motion, and where it stands."""
-    pointers = {}
+    pointers: dict[str, str] = {}
     for place, _, _ in phase.system.equations():
         field, name = place
         where = f"system/{field}/{name}"

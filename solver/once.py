@@ -1,7 +1,6 @@
 """One problem from one guess to a judged result: its meshes, its switches, its certificate."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
 
 from schemas.problem import Problem
 from schemas.results import Certificate, Solution, finite
@@ -14,28 +13,11 @@ from solver.solution.choose import choose
 from solver.solution.conclude import conclude, snapshot
 from solver.solve_mesh import SolvedMesh
 from solver.switched import solve_switched
-from solver.trajectory import Trajectory
 
 Listen = Callable[[Solution], None]
 
 
-@dataclass(frozen=True, slots=True)
-class Warm:
-    """From where a solve may start: an earlier solution's trajectories and statics."""
-
-    trajectories: Sequence[Trajectory]
-    statics: Sequence[float]
-
-
-@dataclass(frozen=True, slots=True)
-class Once:
-    """What one solve gave: the published solution, and from where another may go on."""
-
-    solution: Solution
-    warm: Warm
-
-
-def solve_once(problem: Problem, run: Run, listen: Listen, warm: Warm | None = None) -> Once:
+def solve_once(problem: Problem, run: Run, listen: Listen) -> Solution:
     """Solve a problem that has neither stages nor several starts.
 
     Raises
@@ -46,27 +28,21 @@ def solve_once(problem: Problem, run: Run, listen: Listen, warm: Warm | None = N
         If the NLP solver itself fails.
     """
     smooth = smoothed(problem)
-    solved = _solved(smooth, run, lambda so_far: listen(snapshot(problem, so_far, run)), warm)
+    solved = _solved(smooth, run, lambda so_far: listen(snapshot(problem, so_far, run)))
     with run.stage("certify"):
         certificate = _certificate(smooth, solved, run)
-    published = choose(problem, solved)
-    return Once(
-        conclude(problem, solved, certificate, run),
-        Warm(published.trajectories, list(published.statics.values())),
-    )
+    return conclude(problem, solved, certificate, run)
 
 
 def _solved(
-    problem: Problem, run: Run, publish: Callable[[Sequence[SolvedMesh]], None], warm: Warm | None
+    problem: Problem, run: Run, publish: Callable[[Sequence[SolvedMesh]], None]
 ) -> list[SolvedMesh]:
     """All meshes, as of the user's own phases."""
     with run.stage("build"):
         model, setting = prepare(problem)
-        if warm is not None:
-            setting = replace(setting, guesses=warm.trajectories, statics=warm.statics)
     switches = problem.refinement is not None and problem.refinement.switches
     meshes = solve_switched if switches else solve_meshes
-    return meshes(problem, model, setting, run, publish, warm=warm is not None)
+    return meshes(problem, model, setting, run, publish, warm=False)
 
 
 def _certificate(problem: Problem, solved: Sequence[SolvedMesh], run: Run) -> Certificate:

@@ -59,9 +59,9 @@ def solve(
     run = Run(on_event, min(limit, math.inf if deadline is None else deadline), should_stop)
 
     def once(problem: Problem, run: Run) -> Solution:
-        return solve_once(problem, run, on_snapshot).solution
+        return solve_once(problem, run, on_snapshot)
 
-    def row(problem: Problem, run: Run) -> Solution:
+    def staged(problem: Problem, run: Run) -> Solution:
         return solve_stages(problem, once, run)
 
-    return solve_guesses(problem, row, run)
+    return solve_guesses(problem, staged, run)

@@ -135,21 +135,16 @@ class _Built:
             for phase, result, method in parts
         ]
 
-
     def _integral_errors(
         self, extracted: Sequence[Extracted], statics: dict[str, float]
     ) -> list[Array]:
         """How far the sums of each segment are off, of the integrals that matter."""
         errors = []
-        for spec, phase, one in zip(
-            self.problem.phases, self.model.phases, extracted, strict=True
-        ):
+        for spec, phase, one in zip(self.problem.phases, self.model.phases, extracted, strict=True):
             which = used_integrals(self.problem, spec)
             rows = [i for i, name in enumerate(spec.integrals) if name in which]
             trees = [spec.integrals[name].tree for name in spec.integrals if name in which]
-            errors.append(
-                integral_errors(phase.chain, trees, one.result, one.sums[rows], statics)
-            )
+            errors.append(integral_errors(phase.chain, trees, one.result, one.sums[rows], statics))
         return errors
 
 

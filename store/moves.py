@@ -1,9 +1,11 @@
-"""What the two stores share about moving a job: which moves there are, and what they write."""
+"""What the two stores share: which moves of a job there are, and what moves and ends write."""
 
 import time
 from dataclasses import dataclass
 
+from schemas.events import PointEnded
 from schemas.jobs import MOVES, TERMINAL, JobError, JobStatus, JobTimings
+from schemas.sweeps import PointOutcome
 from store.ports import JobRecord
 
 
@@ -40,3 +42,14 @@ def is_due(record: JobRecord, retention: float) -> bool:
     if not (ended and record.has_result and record.finished is not None):
         return False
     return record.finished + retention < time.time()
+
+
+def point_event(index: int, outcome: PointOutcome) -> PointEnded:
+    """What the log of its job says of a point that has ended."""
+    return PointEnded(
+        index=index,
+        status=outcome.status,
+        solution_status=outcome.solution_status,
+        objective=outcome.objective,
+        seconds=outcome.seconds,
+    )

@@ -10,7 +10,8 @@ from math import inf
 from typing import Protocol
 
 from schemas.events import Event
-from schemas.jobs import JobError, JobStatus, JobTimings, Progress
+from schemas.jobs import JobError, JobKind, JobStatus, JobTimings, Progress
+from schemas.sweeps import PointOutcome
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,7 +19,8 @@ class JobRecord:
     """A job as stored. Times are seconds since the epoch; ``token`` fences the live attempt.
 
     ``attempts`` counts claims, ``kills`` those whose process was killed under a living worker.
-    ``has_result``: a result (or a snapshot of one) is stored.
+    ``has_result``: a result (or a snapshot of one) is stored. A chunk names its ``sweep`` and how
+    many ``points`` it solves; ``seconds`` are for all of them together.
     """
 
     id: str
@@ -41,6 +43,9 @@ class JobRecord:
     error: JobError | None = None
     kills: int = 0
     has_result: bool = False
+    kind: JobKind = JobKind.SOLVE
+    sweep: str = ""
+    points: int = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +54,40 @@ class Page:
 
     records: list[JobRecord]
     next: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class SweepRecord:
+    """A sweep as stored: never a job, but the parent of the chunks in ``jobs``.
+
+    ``cancelled``: when it was asked to stop. Where its points are is in the points themselves and
+    in the records of the jobs.
+    """
+
+    id: str
+    owner: str
+    name: str
+    created: float
+    total: int
+    chunk: int
+    jobs: tuple[str, ...]
+    cancelled: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class SweepRecords:
+    """Records, newest first; ``next`` continues the listing, None ends it."""
+
+    records: list[SweepRecord]
+    next: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class Points:
+    """What is known of a sweep's points by index: how those that ended did, how often begun."""
+
+    ended: dict[int, PointOutcome]
+    begun: dict[int, int]
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,8 +107,11 @@ class Jobs(Protocol):
     def get(self, job_id: str, owner: str | None = None) -> JobRecord:
         """The record. ``owner`` None: the worker's view. Raises UnknownJob."""
 
+    def many(self, job_ids: Sequence[str]) -> Sequence[JobRecord | None]:
+        """The records of several jobs at once, None for unknown ones (the worker's view)."""
+
     def problem(self, job_id: str) -> bytes:
-        """The stored problem. Raises UnknownJob."""
+        """The stored problem (of a chunk: its plan). Raises UnknownJob."""
 
     def list(
         self,
@@ -80,7 +122,10 @@ class Jobs(Protocol):
         cursor: str | None = None,
         limit: int = 50,
     ) -> Page:
-        """An owner's jobs, newest first. Raises BadProblem on a cursor that is not ours."""
+        """An owner's jobs, newest first, without the chunks of sweeps.
+
+        Raises BadProblem on a cursor that is not ours.
+        """
 
     def live(self) -> Sequence[JobRecord]:
         """All jobs that have not ended, of every owner (the worker's view, for its sweep)."""
@@ -115,6 +160,45 @@ class Jobs(Protocol):
 
         Raises UnknownJob, and Conflict while the job lives.
         """
+
+
+class Sweeps(Protocol):
+    """Sweeps and their points. A point ends once, whatever dies; a stale attempt writes nothing."""
+
+    def create(self, record: SweepRecord, plan: bytes) -> None:
+        """Store a sweep and its plan; its jobs follow."""
+
+    def get(self, sweep_id: str, owner: str | None = None) -> SweepRecord:
+        """The record. ``owner`` None: the worker's view. Raises UnknownSweep."""
+
+    def plan(self, sweep_id: str) -> bytes:
+        """The stored plan. Raises UnknownSweep."""
+
+    def list(self, owner: str, *, cursor: str | None = None, limit: int = 20) -> SweepRecords:
+        """An owner's sweeps, newest first. Raises BadProblem on a cursor that is not ours."""
+
+    def points(self, sweep_id: str) -> Points:
+        """What is known of the points."""
+
+    def result(self, sweep_id: str, index: int) -> bytes | None:
+        """The JSON of a point's result, or None."""
+
+    def begin(self, sweep_id: str, index: int, job: JobRecord) -> int:
+        """Note that the live attempt begins a point: how often it was begun; 0 if stale."""
+
+    def end(
+        self, sweep_id: str, index: int, job: JobRecord, outcome: PointOutcome, result: bytes | None
+    ) -> bool:
+        """Store how a point ended, with its event, in one step; False if stale.
+
+        A point that has ended stays as it is.
+        """
+
+    def cancel(self, sweep_id: str) -> None:
+        """Note that the sweep was asked to stop."""
+
+    def delete(self, sweep_id: str, owner: str) -> None:
+        """Forget a sweep and its points; its jobs are forgotten by themselves. UnknownSweep."""
 
 
 class Results(Protocol):
@@ -194,17 +278,17 @@ KEY_IN_FLIGHT = "key-in-flight"
 
 
 class Idempotency(Protocol):
-    """Keys of clients that must not create a job twice. Kept 24 hours, per owner."""
+    """Keys of clients that must not create anything twice. Kept 24 hours, per owner."""
 
     def begin(self, owner: str, key: str, fingerprint: str) -> str | None:
-        """Reserve a key: None if it is new, else the id of the job it made.
+        """Reserve a key: None if it is new, else the id of the job or sweep it made.
 
         Raises Conflict, its message ``KEY_REUSED`` when the key came with another body,
         ``KEY_IN_FLIGHT`` when the first request has not been answered yet.
         """
 
     def finish(self, owner: str, key: str, job_id: str) -> None:
-        """The key has made this job."""
+        """The key has made this job or sweep."""
 
     def abandon(self, owner: str, key: str) -> None:
         """The request failed; the key is free again."""
@@ -220,6 +304,7 @@ class Store:
     """
 
     jobs: Jobs
+    sweeps: Sweeps
     results: Results
     events: Events
     queue: Queue

@@ -13,9 +13,10 @@ from store.backend.connection import open_client
 from store.backend.wiring import assemble
 from store.ports import Store
 from store.settings import LONG, NONE, SHORT, StoreSettings
+from worker.attempt import Engine, Render
 from worker.presence import Presence, unique_name
 from worker.process import FootfallWorker
-from worker.run import RUNNER, Engine, Render, Runner
+from worker.run import RUNNER, Runner
 from worker.settings import WorkerSettings
 
 logger = logging.getLogger("footfall.worker")

@@ -75,8 +75,8 @@ def _verdict(record: JobRecord, loss: Loss, settings: WorkerSettings) -> JobErro
         return None
     if loss.killed and time.time() - (record.started or 0.0) > record.seconds + _OVERRUN:
         return outcomes.out_of_time()
-    kills = record.kills + loss.killed
-    if kills >= settings.most_kills or record.attempts >= settings.most_attempts:
+    kills, share = record.kills + loss.killed, record.points  # each point may cost as many
+    if kills >= settings.most_kills * share or record.attempts >= settings.most_attempts * share:
         return outcomes.worker_killed(record.attempts, loss.how)
     return None
 

@@ -48,6 +48,11 @@ class Reporter:
         self._snapshot: Solution | None = None
         self._next_snapshot = time.monotonic() + PATIENCE
 
+    @property
+    def job_id(self) -> str:
+        """Whose events these are."""
+        return self._record.id
+
     # The engine's side: quick, and without the store.
 
     def __call__(self, event: EngineEvent) -> None:

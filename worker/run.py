@@ -3,42 +3,19 @@
 import json
 import logging
 import time
-from collections.abc import Callable
 from contextvars import ContextVar
 from dataclasses import dataclass
-from typing import Any, Protocol
 
 from schemas.errors import StoreUnavailable
-from schemas.events import EngineEvent
-from schemas.jobs import JobStatus
-from schemas.problem import Problem
+from schemas.jobs import JobKind, JobStatus
 from schemas.reading import read_problem
-from schemas.results import Solution
 from store.ports import JobRecord, Store
-from worker import limits, outcomes
+from worker.attempt import Engine, Render, attempt
+from worker.chunk import solve_chunk
 from worker.outcomes import Outcome
 from worker.reporting import Reporter
 
 logger = logging.getLogger("footfall.worker")
-
-
-class Engine(Protocol):
-    """``solver.solve``, or what a test puts in its place."""
-
-    def __call__(
-        self,
-        problem: Problem,
-        *,
-        on_event: Callable[[EngineEvent], None],
-        deadline: float | None,
-        should_stop: Callable[[], bool],
-        on_snapshot: Callable[[Solution], None],
-    ) -> Solution:
-        """Solve. ``deadline`` is a time of ``time.monotonic``."""
-
-
-Render = Callable[[dict[str, Any], dict[str, Any]], str]
-"""``footfall.report.render``: a result and its problem to a page."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,25 +35,34 @@ class Runner:
             logger.info("job %s is not queued any more; passed over", job_id)
             return
         logger.info("job %s: attempt %d starts", job_id, record.attempts)
-        problem = self.store.jobs.problem(job_id)
         reporter = Reporter(self.glance, record)
-        outcome = self._attempt(record, problem, reporter)
-        self._finish(record, problem, outcome, reporter)
+        if record.kind is JobKind.SWEEP_CHUNK:
+            self._chunk(record, reporter)
+        else:
+            self._solve(record, reporter)
 
-    def _attempt(self, record: JobRecord, problem: bytes, reporter: Reporter) -> Outcome:
-        deadline = time.monotonic() + record.seconds
-        try:
-            with reporter.talking(), limits.memory(record.megabytes):
-                solution = self.engine(
-                    read_problem(problem),
-                    on_event=reporter,
-                    deadline=deadline,
-                    should_stop=lambda: reporter.stop,
-                    on_snapshot=reporter.snapshot,
-                )
-        except Exception as error:  # noqa: BLE001 - whatever the engine does, the job must end
-            return outcomes.failed(error, record.id)
-        return outcomes.solved(solution)
+    def _chunk(self, record: JobRecord, reporter: Reporter) -> None:
+        """The points are stored as they end; what is left is the state of the job."""
+        with reporter.talking():
+            outcome = solve_chunk(self.store, self.engine, record, reporter)
+        reporter.finish(with_snapshot=False)
+        if outcome is None:
+            logger.warning("job %s was taken over by another attempt", record.id)
+        else:
+            self._move(record, outcome, reporter)
+
+    def _solve(self, record: JobRecord, reporter: Reporter) -> None:
+        problem = self.store.jobs.problem(record.id)
+        with reporter.talking():
+            outcome = attempt(
+                self.engine,
+                lambda: read_problem(problem),
+                reporter,
+                seconds=record.seconds,
+                megabytes=record.megabytes,
+                on_snapshot=reporter.snapshot,
+            )
+        self._finish(record, problem, outcome, reporter)
 
     def _finish(
         self, record: JobRecord, problem: bytes, outcome: Outcome, reporter: Reporter
@@ -88,29 +74,30 @@ class Runner:
         if result and not self.store.results.put(record.id, record.token, result):
             logger.warning("job %s was taken over by another attempt", record.id)
             return
+        if self._move(record, outcome, reporter) and result:
+            self._report(record, result, problem)
+
+    def _move(self, record: JobRecord, outcome: Outcome, reporter: Reporter) -> bool:
+        """The state in which the attempt leaves its job; False if the attempt is stale."""
+        solution, error = outcome.solution, outcome.error
         moved = self.store.jobs.move(
             record.id,
             outcome.to,
             expect=frozenset({JobStatus.RUNNING, JobStatus.CANCELLING}),
             token=record.token,
             solution_status=solution.status if solution else None,
-            message=solution.message
-            if solution
-            else outcome.error.message
-            if outcome.error
-            else "",
-            error=outcome.error,
+            message=solution.message if solution else error.message if error else "",
+            error=error,
             timings=reporter.timings(),
         )
         if moved is None:
             logger.warning("job %s was taken over by another attempt", record.id)
-            return
+            return False
         seconds = time.time() - (record.started or record.created)
-        how = solution.status if solution else outcome.error.type if outcome.error else ""
+        how = solution.status if solution else error.type if error else record.kind
         logger.info("job %s: %s (%s) after %.2f s", record.id, outcome.to, how, seconds)
         self._to_disk(record.id)
-        if result:
-            self._report(record, result, problem)
+        return True
 
     def _report(self, record: JobRecord, result: bytes, problem: bytes) -> None:
         try:

@@ -8,7 +8,7 @@ import json
 from typing import Any
 
 from schemas.reading import read_problem
-from worker.run import Engine, Render
+from worker.attempt import Engine, Render
 
 _PENDULUM: dict[str, Any] = {
     "name": "warming up",

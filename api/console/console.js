@@ -93,6 +93,46 @@ async function showJobs() {
   busy = page.jobs.some((job) => job.links.cancel);
 }
 
+function pointRow(point, places) {
+  const made = element("tr", "");
+  const values = places.map((place) => JSON.stringify(point.values[place] ?? null));
+  const objective = point.objective === null ? "" : point.objective.toPrecision(8);
+  const said = (point.solution_status ?? point.status).replaceAll("_", " ");
+  made.append(...[point.index, ...values, objective, said].map((text) => element("td", text)));
+  const links = element("td", "");
+  if (point.links.result) links.append(element("a", "result", { href: point.links.result }));
+  made.append(links);
+  return made;
+}
+
+async function showPoints(details, sweep) {
+  const { points } = await call(sweep.links.self);
+  const places = [...new Set(points.flatMap((point) => Object.keys(point.values)))];
+  const head = element("tr", "");
+  const names = ["Point", ...places.map((place) => place.split("/").pop()), "Objective", "Solution", ""];
+  head.append(...names.map((name) => element("th", name)));
+  const table = element("table", "");
+  table.append(head, ...points.map((point) => pointRow(point, places)));
+  details.querySelector("div").replaceChildren(table);
+}
+
+function sweepDetails(sweep) {
+  const details = element("details", "", { id: sweep.id });
+  const ended = sweep.total - sweep.counts.queued - sweep.counts.running;
+  const words = `${sweep.name}: ${sweep.status}, ${ended} of ${sweep.total} points have ended`;
+  details.append(element("summary", words), element("div", "", { class: "scroll" }));
+  details.addEventListener("toggle", () => details.open && attempt(() => showPoints(details, sweep)));
+  return details;
+}
+
+// An open table stays as it is until it is closed.
+async function showSweeps() {
+  const { sweeps } = await call("/v1/sweeps?limit=5");
+  byId("sweeps-section").hidden = sweeps.length === 0;
+  if (byId("sweeps").querySelector("[open]")) return;
+  byId("sweeps").replaceChildren(...sweeps.map(sweepDetails));
+}
+
 async function showState() {
   try {
     const ready = await call("/readyz");
@@ -147,7 +187,7 @@ async function attempt(action) {
 }
 
 async function start() {
-  await Promise.allSettled([showExamples(), showState(), showJobs()]);
+  await Promise.allSettled([showExamples(), showState(), showJobs(), showSweeps()]);
 }
 
 byId("example").addEventListener("change", () => attempt(() => (shown = showProblem())));
@@ -161,7 +201,7 @@ byId("key-form").addEventListener("submit", (event) => {
   start();
 });
 async function watch() {
-  if (!document.hidden) await Promise.allSettled([showState(), showJobs()]);
+  if (!document.hidden) await Promise.allSettled([showState(), showJobs(), showSweeps()]);
   setTimeout(watch, busy ? POLL_MS.busy : POLL_MS.idle);
 }
 start().then(watch);

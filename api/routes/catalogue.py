@@ -13,8 +13,8 @@ from api.context import Ctx, require_owner
 from api.errors import NoRoute
 from api.limits import ServiceLimits, limits
 from api.openapi import errors
+from api.published import problem_schema
 from schemas.methods import METHODS
-from schemas.problem import Problem
 from schemas.suggest import did_you_mean
 
 router = APIRouter(prefix="/v1", tags=["catalogue"], dependencies=[Depends(require_owner)])
@@ -106,7 +106,7 @@ class SchemaResponse(JSONResponse):
 @router.get("/schema", response_class=SchemaResponse)
 def get_schema() -> SchemaResponse:
     """The JSON Schema (2020-12) of a problem."""
-    return SchemaResponse(_problem_schema())
+    return SchemaResponse(problem_schema())
 
 
 @router.get("/limits")
@@ -130,12 +130,6 @@ def _methods() -> list[MethodInfo]:
         schema = model.model_json_schema()
         found.append(MethodInfo(kind=kind, title=title, description=words.strip(), settings=schema))
     return found
-
-
-@cache
-def _problem_schema() -> dict[str, Any]:
-    dialect = "https://json-schema.org/draft/2020-12/schema"
-    return {"$schema": dialect, **Problem.model_json_schema()}
 
 
 def _backends(worker: dict[str, object]) -> list[str]:

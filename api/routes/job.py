@@ -1,32 +1,22 @@
 """One job: look, cancel, delete."""
 
-from typing import Annotated, Literal
+from typing import Annotated
 
 import anyio
 from fastapi import APIRouter, Header, Query, Response
 from fastapi.concurrency import run_in_threadpool
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from api.bodies import OptionalJsonBody
 from api.context import Context, Ctx, OwnJob
-from api.errors import BadParameter
+from api.ending import end, read_mode
 from api.openapi import errors, request_body
-from api.stopping import cancel
 from api.views import job_response, job_view, matches
 from api.waiting import MAX_WAIT, follow
-from schemas.jobs import TERMINAL, Job, JobStatus
+from schemas.errors import Conflict
+from schemas.jobs import TERMINAL, Job, JobKind
 from store.ports import JobRecord
 
 router = APIRouter(prefix="/v1/jobs/{job_id}", tags=["jobs"])
-
-
-class Cancellation(BaseModel):
-    """How a job is cancelled: asked first and killed after a second, or killed now."""
-
-    model_config = ConfigDict(extra="forbid")
-    mode: Literal["cooperative", "now"] = Field(
-        default="cooperative", description="'now' kills without asking first."
-    )
 
 
 @router.get(
@@ -64,8 +54,7 @@ async def get_job(
 )
 async def post_cancel(ctx: Ctx, record: OwnJob, body: OptionalJsonBody) -> Response:
     """Cancel a job; again is no error. A running solve keeps its best iterate as the result."""
-    mode = _mode(body)
-    record = await _cancel(ctx, record, kill=mode == "now")
+    record = await end(ctx, record, kill=read_mode(body) == "now")
     return await run_in_threadpool(_current, ctx, record, 202)
 
 
@@ -78,30 +67,14 @@ async def post_cancel(ctx: Ctx, record: OwnJob, body: OptionalJsonBody) -> Respo
 )
 async def delete_job(ctx: Ctx, record: OwnJob) -> Response:
     """Cancel a live job; forget an ended one with its result and events."""
+    if record.kind is JobKind.SWEEP_CHUNK:
+        words = "The job solves points of a sweep and is forgotten with it."
+        raise Conflict(words, f"DELETE /v1/sweeps/{record.sweep} forgets the sweep.")
     if record.status in TERMINAL:
         await run_in_threadpool(ctx.store.jobs.delete, record.id, record.owner)
         return Response(status_code=204)
-    record = await _cancel(ctx, record, kill=False)
+    record = await end(ctx, record, kill=False)
     return await run_in_threadpool(_current, ctx, record, 202)
-
-
-async def _cancel(ctx: Context, record: JobRecord, *, kill: bool) -> JobRecord:
-    record = await run_in_threadpool(cancel, ctx.store, record)
-    if record.status is JobStatus.CANCELLING:
-        if kill:
-            await run_in_threadpool(ctx.store.queue.stop, record.id)
-        ctx.stopper.watch(record.id)
-    return record
-
-
-def _mode(body: bytes) -> str:
-    try:
-        return Cancellation.model_validate_json(body).mode if body else "cooperative"
-    except ValidationError as error:
-        first = error.errors()[0]
-        place = ".".join(str(part) for part in first["loc"])
-        hint = """Send nothing, or {"mode": "cooperative"} or {"mode": "now"}."""
-        raise BadParameter(f"{place or 'body'}: {first['msg']}", hint, place or "body") from None
 
 
 async def _long_poll(ctx: Context, record: JobRecord, seconds: int, known: str | None) -> Response:

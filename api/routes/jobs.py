@@ -54,7 +54,7 @@ async def post_job(
     validate_only: Annotated[bool, Query(description="Check the problem, store nothing.")] = False,
 ) -> Response:
     """Queue a problem. The answer comes once the job is on disk."""
-    draft = await run_in_threadpool(read, ctx, body)
+    draft = await run_in_threadpool(read, ctx, body, owner)
     if validate_only:
         content = draft.validation().model_dump_json()
         return Response(content, media_type="application/json")

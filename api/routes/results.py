@@ -7,14 +7,14 @@ import orjson
 from fastapi import APIRouter, Header, Query, Response
 
 from api.context import Context, Ctx, OwnJob
+from api.earlier import absent
 from api.errors import BadParameter, NotAcceptable
 from api.negotiation import choose
 from api.openapi import errors, texts
 from api.trajectory import CSV, JSON, NPZ, Grid, Trajectory, encode, sample
 from api.views import etag, matches
 from footfall.report import render
-from schemas.errors import NoResult, ResultExpired, ResultNotReady
-from schemas.jobs import TERMINAL, JobStatus
+from schemas.jobs import TERMINAL
 from schemas.results import Solution
 from store.ports import JobRecord
 
@@ -90,7 +90,7 @@ def get_report(ctx: Ctx, record: OwnJob) -> Response:
     """A self-contained page about the result."""
     page = ctx.store.results.report(record.id) or _drawn(ctx, record)
     if page is None:
-        raise _absent(record, "report")
+        raise absent(record, "report")
     headers = {"Content-Security-Policy": REPORT_POLICY, "Cache-Control": "private, no-cache"}
     return Response(page, headers=headers, media_type="text/html")
 
@@ -111,18 +111,5 @@ def _drawn(ctx: Context, record: JobRecord) -> bytes | None:
 def _result(ctx: Context, record: JobRecord) -> bytes:
     content = ctx.store.results.get(record.id)
     if content is None:
-        raise _absent(record, "result")
+        raise absent(record, "result")
     return content
-
-
-def _absent(record: JobRecord, what: str) -> ResultNotReady | ResultExpired | NoResult:
-    """Why there is none: not yet, no longer, or never."""
-    if record.status not in TERMINAL:
-        return ResultNotReady(
-            f"The job is {record.status}; it has no {what} yet.",
-            "Follow its events, or poll it with ?wait=60.",
-        )
-    if record.status is JobStatus.EXPIRED or (what == "result" and record.has_result):
-        return ResultExpired(f"The {what} was kept for its time.", "Post the problem again.")
-    reason = record.error.message if record.error else record.message
-    return NoResult(f"The job ended as {record.status} without a {what}. {reason}".strip())

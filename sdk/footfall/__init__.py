@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from footfall.report import render, render_svg
     from footfall.result import NodeValues, PhaseResult, Result
     from footfall.sse import Event
+    from footfall.sweeps import Sweep
     from footfall.transport import Retries
 
 __all__ = [
@@ -32,6 +33,7 @@ __all__ = [
     "PhaseResult",
     "Result",
     "Retries",
+    "Sweep",
     "errors",
     "render",
     "render_svg",
@@ -48,6 +50,7 @@ _HOMES = {
     "PhaseResult": "result",
     "Result": "result",
     "Retries": "transport",
+    "Sweep": "sweeps",
     "render": "report",
     "render_svg": "report",
     "solve": "local",

@@ -1,9 +1,7 @@
 """The client of a Footfall service."""
 
 import io
-import json
 import time
-import uuid
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any, Self
@@ -16,7 +14,6 @@ from footfall.documents import Problem, read_problem
 from footfall.errors import (
     BadProblem,
     BadReply,
-    Conflict,
     ConnectionFailed,
     Issue,
     JobFailed,
@@ -26,7 +23,8 @@ from footfall.errors import (
 )
 from footfall.result import Result
 from footfall.sse import Event, parse
-from footfall.transport import Retries, Transport
+from footfall.sweeps import SweepCalls
+from footfall.transport import Retries, Transport, encoded
 
 DEFAULT_URL = "http://127.0.0.1:8000"
 
@@ -68,7 +66,7 @@ class Job:
             raise BadReply("The service answered with something that is no job.") from error
 
 
-class Client:
+class Client(SweepCalls):
     """Talks to a service: submit problems, follow jobs, fetch results.
 
     A connection that breaks is tried again, as is a reply of 429 or 503; a submission carries an
@@ -128,20 +126,14 @@ class Client:
         ``idempotency_key`` is made up unless given; the same key never makes a second job.
         Raises ``BadProblem`` with every issue.
         """
-        body = _encoded(read_problem(problem))
-        headers = _JSON | {"Idempotency-Key": idempotency_key or uuid.uuid4().hex}
-        for attempt in range(self._transport.retries.tries):
-            try:
-                return self._job("POST", "/v1/jobs", content=body, headers=headers)
-            except Conflict as error:  # a first try, whose answer was lost, is still at work
-                time.sleep(self._transport.retries.pause(attempt, error))
-        return self._job("POST", "/v1/jobs", content=body, headers=headers)
+        body = encoded(read_problem(problem))
+        return Job.read(self._transport.post_once("/v1/jobs", body, idempotency_key))
 
     def validate(self, problem: Problem) -> list[Issue]:
         """What is wrong with a problem; nothing is stored. An empty list: it is fine."""
         query = {"validate_only": "true"}
         try:
-            body = _encoded(read_problem(problem))
+            body = encoded(read_problem(problem))
             self._transport.json("POST", "/v1/jobs", content=body, headers=_JSON, params=query)
         except BadProblem as error:
             return error.issues
@@ -314,13 +306,6 @@ def _failure(error: Mapping[str, Any]) -> BadProblem | JobFailed:
     if error.get("issues"):
         return BadProblem(read_issues(error["issues"]))
     return JobFailed(f"The job failed ({error['type']}): {error['message']}", error.get("hint", ""))
-
-
-def _encoded(problem: dict[str, Any]) -> bytes:
-    try:
-        return json.dumps(problem, allow_nan=False).encode()
-    except (TypeError, ValueError, RecursionError) as error:
-        raise BadProblem([Issue("", f"The problem cannot be written as JSON: {error}")]) from error
 
 
 def _left(deadline: float | None, job_id: str) -> float:

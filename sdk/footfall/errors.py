@@ -14,6 +14,7 @@
     +-- Refused              the service refused, and said why
         +-- Unauthorized     a known key is needed
         +-- UnknownJob       no such job, or somebody else's
+        +-- UnknownSweep     no such sweep, or somebody else's
         +-- ResultNotReady   the job has not ended
         +-- NoResult         the job ended and will never have a result
         +-- ResultExpired    the result was there and has expired
@@ -122,6 +123,10 @@ class UnknownJob(Refused):
     """There is no such job for this key."""
 
 
+class UnknownSweep(Refused):
+    """There is no such sweep for this key, or no such point of it."""
+
+
 class ResultNotReady(Refused):
     """The job has not ended and has no iterate yet."""
 
@@ -172,6 +177,7 @@ HTTPX_ERRORS: dict[type[Exception], type[FootfallError]] = {
 PROBLEM_ERRORS: dict[str, type[Refused]] = {
     "unauthorized": Unauthorized,
     "unknown-job": UnknownJob,
+    "unknown-sweep": UnknownSweep,
     "result-not-ready": ResultNotReady,
     "no-result": NoResult,
     "result-expired": ResultExpired,

@@ -7,7 +7,7 @@ says what to install.
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 from footfall.documents import Problem
 from footfall.documents import read_problem as read_document
@@ -57,7 +57,7 @@ def solve(
             options["on_event"] = lambda event: on_event(_event(event))
         if should_stop is not None:
             options["should_stop"] = should_stop
-        solution = engine(read_problem(document), **options)
+        solution = engine(read_problem(document, _inline()), **options)
     return Result(solution.model_dump(mode="json"))
 
 
@@ -72,10 +72,26 @@ def validate(problem: Problem) -> list[Issue]:
 
         try:
             with _translated():
-                read_problem(document)
+                read_problem(document, _inline())
         except BadProblem as error:
             return error.issues
     return []
+
+
+def _inline() -> Callable[[dict[str, Any]], dict[str, Any]]:
+    """What puts in the systems that a problem names; jobs are at their service alone."""
+    import examples as gallery
+    from schemas.errors import UnknownJob
+    from schemas.inlining import Sources, inlined
+
+    def result(_: str) -> NoReturn:
+        raise UnknownJob(
+            "there are no jobs in this process",
+            "Solve it through the service that has the job, with --server URL.",
+        )
+
+    sources = Sources(gallery.names, gallery.load, result)
+    return lambda document: inlined(document, sources)
 
 
 def examples() -> dict[str, dict[str, Any]]:

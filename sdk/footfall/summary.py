@@ -18,13 +18,15 @@ VERDICTS = {
 
 
 def in_words(result: Mapping[str, Any]) -> str:
-    """All that a person reads on a terminal: summary, trajectories, meshes, certificate."""
+    """All that a person reads on a terminal: summary, trajectories, how they came, certificate."""
     parts = [
         ("", summarize(result)),
         *(
             (f"Trajectory of {phase['name']} (t in s)\n", trajectory_table(phase))
             for phase in result["phases"]
         ),
+        *([("Stages\n", stage_table(result))] if result.get("stages") else []),
+        *([("Distinct minima\n", minima_table(result))] if result.get("minima") else []),
         ("Mesh refinement\n", mesh_table(result)),
         ("Certificate\n", certificate_table(result)),
     ]
@@ -40,18 +42,49 @@ def summarize(result: Mapping[str, Any]) -> str:
         f"  {result['message']}",
         f"  objective    {number(result['objective'], 10)}",
         f"  certificate  {VERDICTS[result['certificate']['verdict']]}",
-        f"  solver       {solver['backend']}, {solver['iterations']} iterations on the last mesh",
+        f"  solver       {_solver(solver)}",
         f"  time         {timing['total']:.2f} s",
     ]
     if mesh:
         error = f"largest error {number(mesh['max_error'], 3)}"
         lines.insert(4, f"  mesh         {plural(mesh['segments'], 'segment')}, {error}")
+    lines += _parts(result)
     if solver["residuals"] and result["status"] != "converged":
         worst = solver["residuals"][0]
         lines.append(f"  worst        {worst['name']}: {number(worst['value'], 3)}{place(worst)}")
     lines += [f"  warning: {text}" for text in result.get("warnings", [])]
     lines += [f"  advice: {text}" for text in result.get("advice", [])]
     return "\n".join(lines)
+
+
+def _solver(solver: Mapping[str, Any]) -> str:
+    text = f"{solver['backend']}, {solver['iterations']} iterations on the last mesh"
+    strategy = solver.get("strategy", "default")
+    return text if strategy == "default" else f"{text}, strategy {words(strategy)}"
+
+
+def _parts(result: Mapping[str, Any]) -> list[str]:
+    """The phases where there are several, the static values, the number of stages and minima."""
+    lines, phases = [], result["phases"]
+    if len(phases) > 1:
+        lines = [f"  phase        {_phase(phase)}" for phase in phases]
+    lines += [
+        f"  static       {name} = {number(value, 10)}"
+        for name, value in result.get("static", {}).items()
+    ]
+    if stages := result.get("stages"):
+        lines.append(f"  stages       {len(stages)} solved in a row")
+    if minima := result.get("minima"):
+        guesses = sum(len(one["seeds"]) for one in minima)
+        distinct = f"{len(minima)} distinct" if len(minima) > 1 else "1"
+        lines.append(f"  minima       {distinct}, from {guesses} guesses that converged")
+    return lines
+
+
+def _phase(phase: Mapping[str, Any]) -> str:
+    start, end = phase["knots"][0], phase["knots"][-1]
+    size = plural(len(phase["knots"]) - 1, "segment")
+    return f"{phase['name']}: {number(start, 6)} to {number(end, 6)} s, {size}"
 
 
 def published_mesh(result: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -62,19 +95,62 @@ def published_mesh(result: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def mesh_table(result: Mapping[str, Any]) -> str:
-    """One line for each mesh of the refinement."""
+    """One line for each mesh of the refinement; the polynomials' degrees where they are told."""
+    meshes = result["mesh_refinement"]["iterations"]
+    degrees = any(mesh.get("degrees") for mesh in meshes)
     rows = [
         [
             str(index + 1),
             str(mesh["segments"]),
+            *[degree_range(mesh.get("degrees", []))] * degrees,
             number(mesh["max_error"], 3),
             number(mesh["objective"], 10),
             str(mesh["nlp_iterations"]),
             f"{mesh['seconds']:.3f}",
         ]
-        for index, mesh in enumerate(result["mesh_refinement"]["iterations"])
+        for index, mesh in enumerate(meshes)
     ]
-    return table(["mesh", "segments", "max error", "objective", "iterations", "seconds"], rows)
+    head = ["mesh", "segments", *["degrees"] * degrees]
+    return table([*head, "max error", "objective", "iterations", "seconds"], rows)
+
+
+def degree_range(degrees: Sequence[int]) -> str:
+    """The degrees of a mesh's polynomials: one number, or from the least to the most."""
+    if not degrees:
+        return "-"
+    low, high = min(degrees), max(degrees)
+    return str(low) if low == high else f"{low} to {high}"
+
+
+def stage_table(result: Mapping[str, Any]) -> str:
+    """One line for each stage of those solved in a row."""
+    rows = [
+        [
+            str(index + 1),
+            number(stage["objective"], 10),
+            str(stage["segments"]),
+            str(stage["nlp_iterations"]),
+            f"{stage['seconds']:.3f}",
+            words(stage["status"]),
+        ]
+        for index, stage in enumerate(result["stages"])
+    ]
+    return table(["stage", "objective", "segments", "iterations", "seconds", "status"], rows)
+
+
+def minima_table(result: Mapping[str, Any]) -> str:
+    """One line for each distinct minimum, with the seeds of the guesses that led to it."""
+    rows = [
+        [
+            str(index + 1),
+            number(one["objective"], 10),
+            words(one["status"]),
+            VERDICTS[one["verdict"]],
+            ", ".join(map(str, one["seeds"])),
+        ]
+        for index, one in enumerate(result["minima"])
+    ]
+    return table(["minimum", "objective", "status", "certificate", "seeds"], rows)
 
 
 def certificate_table(result: Mapping[str, Any]) -> str:

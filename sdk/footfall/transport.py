@@ -1,7 +1,9 @@
 """Requests that survive a bad moment: every error of httpx made ours, retries with patience."""
 
+import json
 import random
 import time
+import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -12,9 +14,12 @@ from typing import Any
 import httpx
 
 from footfall.errors import (
+    BadProblem,
     BadReply,
+    Conflict,
     ConnectionFailed,
     FootfallError,
+    Issue,
     TryLater,
     from_httpx,
     from_problem,
@@ -62,6 +67,19 @@ class Transport:
         """The JSON of the reply."""
         return read_json(self.request(method, path, **options))
 
+    def post_once(self, path: str, body: bytes, key: str | None) -> Any:
+        """Post JSON under an idempotency key, made up unless given: again never makes a second.
+
+        The JSON of the reply.
+        """
+        headers = {"Content-Type": "application/json", "Idempotency-Key": key or uuid.uuid4().hex}
+        for attempt in range(self.retries.tries):
+            try:
+                return self.json("POST", path, content=body, headers=headers)
+            except Conflict as error:  # a first try, whose answer was lost, is still at work
+                time.sleep(self.retries.pause(attempt, error))
+        return self.json("POST", path, content=body, headers=headers)
+
     @contextmanager
     def stream(self, path: str, **options: Any) -> Iterator[Iterator[str]]:
         """The lines of a reply as they come; no retries, since only the reader can resume."""
@@ -94,6 +112,14 @@ class Transport:
         if isinstance(error, TryLater):
             error.retry_after = retry_after(response.headers.get("Retry-After"))
         return error
+
+
+def encoded(document: dict[str, Any]) -> bytes:
+    """What is to be posted, as JSON. Raises ``BadProblem``."""
+    try:
+        return json.dumps(document, allow_nan=False).encode()
+    except (TypeError, ValueError, RecursionError) as error:
+        raise BadProblem([Issue("", f"The problem cannot be written as JSON: {error}")]) from error
 
 
 def read_json(response: httpx.Response) -> Any:

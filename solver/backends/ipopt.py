@@ -84,6 +84,9 @@ def _options(settings: SolverSettings, watch: Watch, *, warm: bool) -> dict[str,
         "ipopt.tol": settings.tolerance,
         "ipopt.bound_relax_factor": 0.0,
         "ipopt.max_iter": settings.max_iterations,
+        # The systems are scaled and nearly banded: what MUMPS would do about that only costs.
+        "ipopt.mumps_permuting_scaling": 0,
+        "ipopt.mumps_pivot_order": 0,
         "ipopt.max_wall_time": float(np.clip(watch.remaining(), 1e-3, 1e6)),
         "iteration_callback_step": 1,
     }

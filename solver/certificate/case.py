@@ -14,8 +14,8 @@ from schemas.phases import Phase
 from schemas.problem import Problem
 from schemas.results import PhaseResult
 from solver.lowering import lower
-from solver.lowering.used import used_integrals
 from solver.lowering.form import Form
+from solver.lowering.used import used_integrals
 from solver.numeric import (
     Along,
     Array,

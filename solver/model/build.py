@@ -7,7 +7,8 @@ from schemas import resolve
 from schemas.expressions import Name, Tree
 from schemas.phases import Constraint as ConstraintSpec
 from schemas.phases import Phase as PhaseSpec
-from schemas.problem import Problem, Static as StaticSpec
+from schemas.problem import Problem
+from schemas.problem import Static as StaticSpec
 from schemas.values import Bound
 from solver.lowering import Form, Slacks, lower, lower_native, slacks
 from solver.model.model import OPEN, Constraint, Interval, Model, Phase, Static
@@ -32,9 +33,7 @@ def build_model(problem: Problem, native: Sequence[bool] | None = None) -> Model
     return Model(tuple(phases), objective, statics, linkages)
 
 
-def _phase(
-    spec: PhaseSpec, form: Form, chain: Form, extra: Slacks | None, *, first: bool
-) -> Phase:
+def _phase(spec: PhaseSpec, form: Form, chain: Form, extra: Slacks | None, *, first: bool) -> Phase:
     constants = form.constants
     variables = [*form.states, *form.controls]
     bounds = {name: _interval(spec.bounds.get(name), constants) for name in variables}

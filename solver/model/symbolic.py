@@ -163,9 +163,7 @@ def boundary_scope(
     return scope
 
 
-def objective_scope(
-    model: Model, scopes: Sequence[Mapping[str, SX]], statics: SX
-) -> dict[str, SX]:
+def objective_scope(model: Model, scopes: Sequence[Mapping[str, SX]], statics: SX) -> dict[str, SX]:
     """Names of objective and linkages: every phase's under its prefix, the only one's bare."""
     scope = {
         f"{phase.name}.{name}": value

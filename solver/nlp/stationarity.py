@@ -1,4 +1,4 @@
-"""Is a point an optimum as far as numbers of this size can tell?
+"""Whether a point is an optimum, as far as numbers of its size can tell.
 
 Solvers compare the gradient of the Lagrangian with an absolute tolerance. Where its terms are
 large, as with fourth derivatives, round-off keeps it above that for ever, and a solve that has

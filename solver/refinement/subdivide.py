@@ -1,34 +1,15 @@
 """Where to cut: the order-based number of parts of each segment (003, equation 8.22)."""
 
-from collections.abc import Sequence
-
 import numpy as np
 from numpy.typing import NDArray
 
 from schemas.problem import Refinement
-from solver.mesh import Mesh
 
 Array = NDArray[np.float64]
 Counts = NDArray[np.int_]
 
 KAPPA = 0.1
 """The safety factor of 8.22: aim at a tenth of the tolerance."""
-
-
-def refine(
-    meshes: Sequence[Mesh], errors: Sequence[Array], order: int, settings: Refinement
-) -> list[Mesh] | None:
-    """Cut every segment of every phase whose error is above the tolerance.
-
-    As ``count_parts`` says. None where there is no room at all under ``settings.max_segments``.
-    """
-    flat = np.concatenate(errors)
-    room = settings.max_segments - len(flat)
-    if room <= 0:
-        return None
-    parts = keep_to(room, count_parts(flat, order, settings), flat)
-    splits = np.split(parts, np.cumsum([mesh.segments for mesh in meshes])[:-1])
-    return [mesh.subdivide(own) for mesh, own in zip(meshes, splits, strict=True)]
 
 
 def count_parts(errors: Array, order: int | Counts, settings: Refinement) -> Counts:

@@ -2,6 +2,7 @@
 
 import platform
 from collections.abc import Sequence
+from functools import cache
 from importlib.metadata import version
 
 import numpy as np
@@ -109,7 +110,7 @@ def _solution(
             constraints=chosen.rows,
         ),
         timing=run.timing(),
-        reproduce=Reproduce(spec_sha256=spec_sha256(problem), versions=_versions()),
+        reproduce=Reproduce(spec_sha256=spec_sha256(problem), versions=dict(_versions())),
     )
 
 
@@ -137,7 +138,9 @@ def _mesh(mesh: SolvedMesh) -> MeshIteration:
         nlp_iterations=mesh.outcome.iterations,
         seconds=mesh.seconds,
         status=mesh.outcome.status,
-        degrees=[int(n) for one in mesh.setting.meshes if one.degrees is not None for n in one.degrees],
+        degrees=[
+            int(n) for one in mesh.setting.meshes if one.degrees is not None for n in one.degrees
+        ],
         switches=list(mesh.switches),
     )
 
@@ -156,6 +159,7 @@ def _residual(residual: RowResidual, phases: Sequence[PhaseResult]) -> Residual:
     )
 
 
+@cache
 def _versions() -> dict[str, str]:
     packages = ("footfall-server", "casadi", "numpy", "scipy")
     return {"python": platform.python_version()} | {name: version(name) for name in packages}

@@ -70,9 +70,7 @@ def _earlier(guess: SolutionGuess, phase: Phase) -> Trajectory | None:
         found = list(guess.phases)
     if not found:
         return None
-    groups = {
-        name: Curves.from_dict(group.model_dump()) for name, group in found[0].curves.items()
-    }
+    groups = {name: Curves.from_dict(group.model_dump()) for name, group in found[0].curves.items()}
     states, controls = groups["states"], groups.get("controls")
     start, end = float(states.breaks[0]), float(states.breaks[-1])
     empty = Curves([start, end], {})
@@ -81,7 +79,9 @@ def _earlier(guess: SolutionGuess, phase: Phase) -> Trajectory | None:
 
 def _moved(trajectory: Trajectory, phase: Phase, before: float | None) -> Trajectory:
     """The same motion, so that it starts where the phase can start."""
-    start = before if before is not None else _nearest(phase.start or Interval(0, 0), trajectory.start)
+    start = (
+        before if before is not None else _nearest(phase.start or Interval(0, 0), trajectory.start)
+    )
     duration = trajectory.end - trajectory.start
     end = _nearest(phase.end, start + _nearest(phase.duration, duration))
     if end <= start:

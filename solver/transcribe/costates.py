@@ -63,9 +63,7 @@ def _rows_of(transcribed: Transcribed, group: StageGroup, multipliers: Array) ->
     return multipliers[start : start + count * group.stages].reshape(group.stages, count)
 
 
-def _of_strip(
-    layout: PhaseLayout, strip: Strip, multipliers: Array
-) -> tuple[Array, Array] | None:
+def _of_strip(layout: PhaseLayout, strip: Strip, multipliers: Array) -> tuple[Array, Array] | None:
     """Fractions (n,) of the phase, and costates there (n, states)."""
     found = strip.transcription.costates(multipliers, len(layout.phase.states))
     if found is None:

@@ -1,4 +1,4 @@
-"""What joins the ends of all phases: boundary constraints, linkages and the objective, one stage."""
+"""What joins the ends of all phases, in one stage: constraints, linkages, the objective."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -64,9 +64,7 @@ def join_ends(
     pairs = list(zip(layouts, sides, strict=True))
     names = [static.name for static in model.statics]
     scopes = [
-        boundary_scope(
-            layout.phase, side.ends, names, eliminate=layout.transcription.eliminates
-        )
+        boundary_scope(layout.phase, side.ends, names, eliminate=layout.transcription.eliminates)
         for layout, side in pairs
     ]
     whole = objective_scope(model, scopes, shared[0].statics)
@@ -113,9 +111,7 @@ def _one_of_each(shared: Sequence[Shared]) -> list[Shared]:
     symbols: dict[int, SX] = {}
     unified = []
     for one in shared:
-        own = [
-            symbols.setdefault(column, one.symbols[i]) for i, column in enumerate(one.columns)
-        ]
+        own = [symbols.setdefault(column, one.symbols[i]) for i, column in enumerate(one.columns)]
         fresh = ca.vertcat(SX(0, 1), *own)
         start, end, statics = ca.substitute(
             [one.times.start, one.times.end, one.statics], [one.symbols], [fresh]
@@ -126,9 +122,7 @@ def _one_of_each(shared: Sequence[Shared]) -> list[Shared]:
 
 def _shared_variables(shared: Sequence[Shared]) -> tuple[SX, list[int]]:
     """Times and statics, each once."""
-    found = {
-        int(column): one.symbols[i] for one in shared for i, column in enumerate(one.columns)
-    }
+    found = {int(column): one.symbols[i] for one in shared for i, column in enumerate(one.columns)}
     return ca.vertcat(SX(0, 1), *found.values()), list(found)
 
 
@@ -136,7 +130,7 @@ def _phase_ends(layout: PhaseLayout, shared: Shared, functions: PhaseFunctions) 
     """The ends as the transcription completes them, over all variables of both end segments."""
     sides = [
         (
-            symbolic_stage(layout, strip, shared, SX(strip.places[:, segment]), functions),
+            symbolic_stage(strip, shared, SX(strip.places[:, segment]), functions),
             strip.columns()[:, segment].tolist(),
         )
         for strip, segment in layout.ends()

@@ -1,6 +1,6 @@
 """The NLP's point -> trajectories: the one place where arrays turn from CasADi's order."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 
 from footfall.curves import Curve, Curves, fit
 from schemas.results import CurveGroup, Group, PhaseResult, finite
-from solver.model import Phase
-from solver.nlp.variables import Indices
 from solver.trajectory import Trajectory
 from solver.transcribe.layout import Edge, PhaseLayout, Strip
 from solver.transcribe.transcribe import Transcribed
@@ -45,9 +43,7 @@ def extract(transcribed: Transcribed, w: Array) -> list[Extracted]:
     """Read the trajectories of all phases out of the decision variables ``w`` (SI)."""
     phases = []
     for index, layout in enumerate(transcribed.layouts):
-        strips = [
-            _evaluate(transcribed, index, number, w) for number in range(len(layout.strips))
-        ]
+        strips = [_evaluate(transcribed, index, number, w) for number in range(len(layout.strips))]
         start, end = (_time(edge, w) for edge in (layout.start, layout.end))
         trajectory, sums = _trajectory(layout, strips, start, end), _sums(layout, strips)
         result = _result(layout, strips, trajectory, sums)
@@ -76,8 +72,8 @@ def _evaluate(transcribed: Transcribed, phase: int, number: int, w: Array) -> _N
         """(names, segments * nodes) -> (segments, nodes, names)."""
         return np.moveaxis(matrix.reshape(len(matrix), segments, count), 0, 2)
 
-    *series, integrals = (output.full() for output in outputs)
-    return _Nodes(*(turned(matrix) for matrix in series), integrals)
+    x, f, u, z, integrals = (output.full() for output in outputs)
+    return _Nodes(turned(x), turned(f), turned(u), turned(z), integrals)
 
 
 def _trajectory(
@@ -135,17 +131,19 @@ def _result(
 ) -> PhaseResult:
     phase, duration = layout.phase, trajectory.end - trajectory.start
     table = _node_table(layout, strips, trajectory)
+    published = {
+        group: names
+        for group, names in phase.chain.publish.items()
+        if names or group in ("states", "controls")
+    }
     return PhaseResult(
         name=phase.name,
         knots=(trajectory.start + duration * layout.mesh.knots).tolist(),
-        groups={group: table(names) for group, names in phase.chain.publish.items()},
-        curves={
-            group: _curve_group(trajectory, names)
-            for group, names in phase.chain.publish.items()
-            if names or group in ("states", "controls")
-        },
+        groups={group: table(names) for group, names in published.items()},
+        curves={group: _curve_group(trajectory, names) for group, names in published.items()},
         integrals={
-            name: finite(value) for name, value in zip(phase.integrals, sums.sum(axis=1), strict=True)
+            name: finite(value)
+            for name, value in zip(phase.integrals, sums.sum(axis=1), strict=True)
         },
     )
 

@@ -6,7 +6,7 @@ share the variables of their common knots.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import casadi as ca
 import numpy as np
@@ -21,8 +21,9 @@ Kind = Literal["state", "control", "algebraic"]
 KINDS: tuple[Kind, ...] = ("state", "control", "algebraic")
 
 
-class Edge(NamedTuple):
-    """A phase's start or end: the index of its variable, or None and the fixed ``value``."""
+@dataclass(frozen=True, slots=True)
+class Edge:
+    """A phase's start or end: its variable, None where the time is fixed, and its limits."""
 
     index: int | None
     limits: Interval
@@ -90,7 +91,7 @@ class Strip:
     def fractions(self, nodes: Array) -> Array:
         """Where nodes in [0, 1] of every segment lie in the phase: (segments, nodes)."""
         start, width = self.places
-        return start[:, None] + width[:, None] * nodes[None, :]
+        return np.asarray(start[:, None] + width[:, None] * nodes[None, :])
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,9 +156,7 @@ class PhaseLayout:
         raise LookupError(f"segment {segment} is in no strip")
 
 
-def strips_of(
-    transcription: Transcription, mesh: Mesh
-) -> Sequence[tuple[Transcription, Indices]]:
+def strips_of(transcription: Transcription, mesh: Mesh) -> Sequence[tuple[Transcription, Indices]]:
     """The segments of each kind: one strip, or one for each number of collocation points."""
     if mesh.degrees is None:
         return [(transcription, np.arange(mesh.segments))]

@@ -6,12 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.mesh import Mesh
-from solver.model import OPEN, Interval, Phase
+from solver.model import OPEN, Interval, Phase, Static
 from solver.nlp.scaling import typical_size
 from solver.nlp.variables import Array, Indices, Variables
 from solver.trajectory import Trajectory
 from solver.transcribe.layout import KINDS, Edge, Kind, PhaseLayout, Strip, strips_of
 from solver.transcriptions.base import Node, Transcription
+
+Limits = Mapping[str, Interval]
 
 _DENSE = np.linspace(0.0, 1.0, 5)
 
@@ -21,9 +23,9 @@ class _Quantity:
     """One kind of variable of a phase: names, limits along it and at its ends, sizes."""
 
     names: tuple[str, ...]
-    along: Mapping[str, Interval]
-    initial: Mapping[str, Interval]
-    final: Mapping[str, Interval]
+    along: Limits
+    initial: Limits
+    final: Limits
     scale: Array
 
 
@@ -45,7 +47,7 @@ class Placer:
         start, end = self._times()
         quantities = self._quantities()
         whole = self.transcription
-        shared = {
+        shared: dict[Kind, bool] = {
             "state": True,
             "control": whole.shares_controls,
             "algebraic": whole.shares_controls,
@@ -97,19 +99,20 @@ class Placer:
     def _quantities(self) -> dict[Kind, _Quantity]:
         phase = self.phase
         unknown = () if self.transcription.eliminates else phase.algebraic
-        open_sides = dict.fromkeys(unknown, OPEN)
+        free = dict.fromkeys(unknown, OPEN)
         tables = (phase.bounds, phase.initial, phase.final)
 
-        def quantity(names: tuple[str, ...], *tables: Mapping[str, Interval]) -> _Quantity:
-            return _Quantity(names, *tables, self._sizes(names, tables))
+        def quantity(names: tuple[str, ...], tables: tuple[Limits, Limits, Limits]) -> _Quantity:
+            along, initial, final = tables
+            return _Quantity(names, along, initial, final, self._sizes(names, tables))
 
         return {
-            "state": quantity(phase.states, *tables),
-            "control": quantity(phase.controls, *tables),
-            "algebraic": quantity(unknown, open_sides, open_sides, open_sides),
+            "state": quantity(phase.states, tables),
+            "control": quantity(phase.controls, tables),
+            "algebraic": quantity(unknown, (free, free, free)),
         }
 
-    def _sizes(self, names: Sequence[str], tables: Sequence[Mapping[str, Interval]]) -> Array:
+    def _sizes(self, names: Sequence[str], tables: Sequence[Limits]) -> Array:
         limits = [[side for table in tables for side in table[name]] for name in names]
         samples = self.guess.sample(names, self.mesh.fractions(_DENSE).ravel())
         return typical_size(np.array(limits).reshape(len(names), 6), samples)
@@ -150,12 +153,12 @@ class Placer:
             lower[row], upper[row] = quantity.along[name]
             for at, limits in ((0.0, quantity.initial), (1.0, quantity.final)):
                 lower[row, where == at], upper[row, where == at] = limits[name]
-        return self.variables.add(
-            self.index, names, where, (lower, upper), guess, quantity.scale
-        )
+        return self.variables.add(self.index, names, where, (lower, upper), guess, quantity.scale)
 
 
-def place_statics(variables: Variables, statics: Sequence, values: Sequence[float]) -> tuple[int, ...]:
+def place_statics(
+    variables: Variables, statics: Sequence[Static], values: Sequence[float]
+) -> tuple[int, ...]:
     """Add the problem's statics to the table, starting at ``values``."""
     places = []
     for static, value in zip(statics, values, strict=True):

@@ -11,7 +11,7 @@ from solver.model import Constraint, Interval
 from solver.model.symbolic import PhaseFunctions, Place, path_rows
 from solver.nlp.stages import Rows, StageGroup
 from solver.nlp.variables import Array, Indices
-from solver.transcribe.layout import PhaseLayout, Shared, Strip
+from solver.transcribe.layout import KINDS, PhaseLayout, Shared, Strip
 from solver.transcriptions.base import Collocation, Point, Segment
 
 
@@ -43,7 +43,7 @@ class SymbolicStage:
 
 
 def symbolic_stage(
-    layout: PhaseLayout, strip: Strip, shared: Shared, place: SX, functions: PhaseFunctions
+    strip: Strip, shared: Shared, place: SX, functions: PhaseFunctions
 ) -> SymbolicStage:
     """A segment's symbols, completed by the transcription.
 
@@ -53,7 +53,9 @@ def symbolic_stage(
     times, blocks = shared.times, strip.blocks
     points = tuple(
         Point(
-            *(SX.sym(kind[0], len(blocks[kind][i])) for kind in ("state", "control", "algebraic")),
+            SX.sym("x", len(blocks["state"][i])),
+            SX.sym("u", len(blocks["control"][i])),
+            SX.sym("z", len(blocks["algebraic"][i])),
             times.at(fraction + node.fraction * width),
         )
         for i, node in enumerate(strip.transcription.nodes)
@@ -83,7 +85,7 @@ def segment_group(
     ``weights`` (sums, integrals) says what each integral adds to each sum of the program.
     """
     place, shared = SX.sym("place", 2), layout.shared()
-    stage = symbolic_stage(layout, strip, shared, place, functions)
+    stage = symbolic_stage(strip, shared, place, functions)
     sums = ca.mtimes(ca.DM(weights), stage.quadrature()) if weights.size else SX(len(weights), 1)
     return StageGroup(
         phase=index,
@@ -96,15 +98,13 @@ def segment_group(
     )
 
 
-def segment_nodes(
-    layout: PhaseLayout, strip: Strip, functions: PhaseFunctions
-) -> ca.Function:
+def segment_nodes(layout: PhaseLayout, strip: Strip, functions: PhaseFunctions) -> ca.Function:
     """Segment's variables, constants -> x, f, u, z (names, nodes), and its integrals.
 
     ``z`` is zero at nodes without algebraic variables.
     """
     place, shared = SX.sym("place", 2), layout.shared()
-    stage = symbolic_stage(layout, strip, shared, place, functions)
+    stage = symbolic_stage(strip, shared, place, functions)
     points = stage.collocation.points
     outputs = [
         ca.horzcat(*(point.x for point in points)),
@@ -126,20 +126,18 @@ def knot_group(
     if not which or not transcription.shares_controls:
         return []
     shared, fraction = layout.shared(), SX.sym("fraction")
-    own = [SX.sym(kind[0], len(columns)) for kind, columns in layout.knots.items()]
+    x, u, z = (SX.sym(kind, len(layout.knots[kind])) for kind in KINDS)
     natives = SX.zeros(len(layout.phase.natives), 1)  # no row of these uses them
-    place = Place(*own, natives, shared.times.at(fraction), shared.statics)
+    place = Place(x, u, z, natives, shared.times.at(fraction), shared.statics)
     knots = layout.mesh.knots[None, :]
     rows = _path_rows(path, which, SX(functions.path(*place.arguments())), knots)
     columns = _with_shared(layout.knot_columns(), shared)
-    variables = ca.vertcat(*own, shared.symbols)
+    variables = ca.vertcat(x, u, z, shared.symbols)
     return [StageGroup(index, variables, fraction, columns, knots, rows, SX(sums, 1))]
 
 
 def _with_shared(columns: Indices, shared: Shared) -> Indices:
-    return np.concatenate(
-        [columns, np.repeat(shared.columns[:, None], columns.shape[1], axis=1)]
-    )
+    return np.concatenate([columns, np.repeat(shared.columns[:, None], columns.shape[1], axis=1)])
 
 
 def _segment_rows(layout: PhaseLayout, strip: Strip, stage: SymbolicStage) -> Rows:
@@ -193,9 +191,7 @@ def _bound_rows(layout: PhaseLayout, names: Sequence[str], values: SX, where: Ar
     )
 
 
-def _path_rows(
-    path: Sequence[Constraint], which: Iterable[int], values: SX, where: Array
-) -> Rows:
+def _path_rows(path: Sequence[Constraint], which: Iterable[int], values: SX, where: Array) -> Rows:
     rows = [(path[i], values[i]) for i in which]
     return _rows(
         [row.label for row, _ in rows],

@@ -73,14 +73,10 @@ def _layouts(
 ) -> list[PhaseLayout]:
     layouts: list[PhaseLayout] = []
     for index, (phase, transcription, mesh, guess) in enumerate(
-        zip(
-            model.phases, setting.transcriptions, setting.meshes, setting.guesses, strict=True
-        )
+        zip(model.phases, setting.transcriptions, setting.meshes, setting.guesses, strict=True)
     ):
         before = layouts[-1].end if layouts else None
-        placer = Placer(
-            variables, index, phase, mesh, guess, transcription, statics, before
-        )
+        placer = Placer(variables, index, phase, mesh, guess, transcription, statics, before)
         layouts.append(placer.place())
     return layouts
 

@@ -55,4 +55,3 @@ class ClosedForm(Transcription):
         """There are none."""
         del h
         return np.zeros((u.shape[2], u.shape[0], 1))
-

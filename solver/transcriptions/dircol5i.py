@@ -36,31 +36,34 @@ class DirCol5i(Transcription):
         """The splines at the four points; the dynamics are constraints along the phase."""
         a, *_, b = segment.points
         h = segment.h
-        position = _quintic(*ca.vertsplit(a.x, _thirds(a.x)), *ca.vertsplit(b.x, _thirds(b.x)), h)
-        control = _cubic(*_halves(a.u), *_halves(b.u), h)
+        position = _quintic(_split(a.x, 3), _split(b.x, 3), h)
+        ends = _split(a.u, 2), _split(b.u, 2)
+        control = _cubic(*ends, h)
         points = tuple(
             _at(node, point, position, control, h)
             for node, point in zip(self.nodes, segment.points, strict=True)
         )
-        hull = _hull(*_halves(a.u), *_halves(b.u), h)
-        return Collocation(points, SX(0, 1), self.weighted(points), hull)
+        return Collocation(points, SX(0, 1), self.weighted(points), _hull(*ends, h))
 
     def state_curve(self, x: Array, f: Array, h: Array) -> Array:
         """The splines, their first and their second derivatives."""
         del f
-        starts, ends = (np.split(x[:, node], 3, axis=1) for node in (0, 3))
-        powers = _quintic(*starts, *ends, h)
+        start, end = (np.split(x[:, node], 3, axis=1) for node in (0, 3))
+        powers = _quintic(start, end, h)
         slopes = [
             [p * k / h for k, p in enumerate(powers)][1:],
             [p * k * (k - 1) / h**2 for k, p in enumerate(powers)][2:],
         ]
-        rows = [powers, *([*some, *[np.zeros_like(powers[0])] * (6 - len(some))] for some in slopes)]
+        rows = [
+            powers,
+            *([*some, *[np.zeros_like(powers[0])] * (6 - len(some))] for some in slopes),
+        ]
         return from_powers(np.concatenate([np.stack(row, axis=1) for row in rows], axis=2))
 
     def control_curve(self, u: Array, h: Array) -> Array:
         """The splines and their first derivatives."""
-        starts, ends = (np.split(u[:, node], 2, axis=1) for node in (0, 3))
-        powers = _cubic(*starts, *ends, h)
+        start, end = (np.split(u[:, node], 2, axis=1) for node in (0, 3))
+        powers = _cubic(start, end, h)
         rates = [*([p * k / h for k, p in enumerate(powers)][1:]), np.zeros_like(powers[0])]
         return from_powers(
             np.concatenate([np.stack(row, axis=1) for row in (powers, rates)], axis=2)
@@ -90,8 +93,9 @@ def _derivative(powers: Sequence[Any], order: int, s: float, h: Any) -> Any:
     return total / h**order
 
 
-def _quintic(q0: Any, v0: Any, a0: Any, q1: Any, v1: Any, a1: Any, h: Any) -> list[Any]:
+def _quintic(start: Sequence[Any], end: Sequence[Any], h: Any) -> list[Any]:
     """Coefficients in s of the quintic with these values, slopes and curvatures (8.12)."""
+    (q0, v0, a0), (q1, v1, a1) = start, end
     c0, c1, c2 = q0, h * v0, h**2 * a0 / 2
     gap, slope, bend = q1 - c0 - c1 - c2, h * v1 - c1 - 2 * c2, h**2 * a1 - 2 * c2
     return [
@@ -104,28 +108,26 @@ def _quintic(q0: Any, v0: Any, a0: Any, q1: Any, v1: Any, a1: Any, h: Any) -> li
     ]
 
 
-def _cubic(u0: Any, r0: Any, u1: Any, r1: Any, h: Any) -> list[Any]:
+def _cubic(start: Sequence[Any], end: Sequence[Any], h: Any) -> list[Any]:
     """Coefficients in s of the cubic with these values and slopes."""
+    (u0, r0), (u1, r1) = start, end
     rise = u1 - u0
     return [u0, h * r0, 3 * rise - h * (2 * r0 + r1), h * (r0 + r1) - 2 * rise]
 
 
-def _hull(u0: SX, r0: SX, u1: SX, r1: SX, h: SX) -> tuple[SX, ...]:
+def _hull(start: Sequence[SX], end: Sequence[SX], h: SX) -> tuple[SX, ...]:
     """The inner Bernstein coefficients of the control and of its rate.
 
     A polynomial lies within the range of its Bernstein coefficients: where these keep their
     bounds, a cubic that saturates does not pass them between the points.
     """
+    (u0, r0), (u1, r1) = start, end
     first, second = u0 + h * r0 / 3, u1 - h * r1 / 3
     middle = 3 * (second - first) / h
     return ca.vertcat(first, middle), ca.vertcat(second, middle)
 
 
-def _thirds(x: SX) -> list[int]:
-    count = x.numel() // 3
-    return [0, count, 2 * count, 3 * count]
-
-
-def _halves(u: SX) -> tuple[SX, SX]:
-    count = u.numel() // 2
-    return u[:count], u[count:]
+def _split(stacked: SX, parts: int) -> list[SX]:
+    """A vector in equal parts: values, then their derivatives."""
+    count = stacked.numel() // parts
+    return [stacked[k * count : (k + 1) * count] for k in range(parts)]

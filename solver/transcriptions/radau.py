@@ -31,7 +31,10 @@ class Radau(Transcription):
         self.order = 2 * points - 1
         self.error_order = points + 1
         self.shares_controls = False
-        self.nodes = (Node(0.0, control=False, algebraic=False), *(Node(fraction) for fraction in inner))
+        self.nodes = (
+            Node(0.0, control=False, algebraic=False),
+            *(Node(fraction) for fraction in inner),
+        )
         self._places = np.array(inner)
         self.weights = (0.0, *quadrature_weights(self._places))
         self._derivative = differentiation_matrix(self.fractions)[1:]

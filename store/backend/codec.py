@@ -7,8 +7,8 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from schemas.jobs import JobError, JobStatus, JobTimings, Progress
-from store.ports import JobRecord
+from schemas.jobs import JobError, JobKind, JobStatus, JobTimings, Progress
+from store.ports import JobRecord, SweepRecord
 
 _READERS: dict[str, Callable[[str], Any]] = {
     "status": JobStatus,
@@ -19,6 +19,8 @@ _READERS: dict[str, Callable[[str], Any]] = {
     "seconds": float,
     "megabytes": int,
     "kills": int,
+    "kind": JobKind,
+    "points": int,
     "has_result": lambda text: text == "1",
     "progress": Progress.model_validate_json,
     "timings": JobTimings.model_validate_json,
@@ -42,6 +44,27 @@ def to_record(stored: dict[bytes, bytes]) -> JobRecord:
     texts = {name.decode(): value.decode() for name, value in stored.items()}
     return JobRecord(
         **{name: _READERS.get(name, str)(text) for name, text in texts.items() if name in _NAMES}
+    )
+
+
+def sweep_fields(record: SweepRecord) -> dict[str, str]:
+    """The record of a sweep as fields."""
+    plain = {field.name: getattr(record, field.name) for field in fields(record)}
+    return to_fields(**{**plain, "jobs": " ".join(record.jobs)})
+
+
+def to_sweep(stored: dict[bytes, bytes]) -> SweepRecord:
+    """The record of a sweep out of its hash."""
+    texts = {name.decode(): value.decode() for name, value in stored.items()}
+    return SweepRecord(
+        id=texts["id"],
+        owner=texts["owner"],
+        name=texts["name"],
+        created=float(texts["created"]),
+        total=int(texts["total"]),
+        chunk=int(texts["chunk"]),
+        jobs=tuple(texts["jobs"].split()),
+        cancelled=float(texts["cancelled"]) if "cancelled" in texts else None,
     )
 
 

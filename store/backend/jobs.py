@@ -3,6 +3,7 @@
 import time
 import uuid
 from builtins import list as list_of
+from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any, cast
 
@@ -10,10 +11,11 @@ from redis import Redis
 
 from schemas.errors import Conflict, UnknownJob
 from schemas.events import StateChanged
-from schemas.jobs import TERMINAL, JobError, JobStatus, JobTimings, Progress
+from schemas.jobs import TERMINAL, JobError, JobKind, JobStatus, JobTimings, Progress
 from store import cursors
 from store.backend import codec, keys, scripts
 from store.backend.connection import translated
+from store.backend.listing import entries
 from store.moves import Changes, allowed, ending, is_due
 from store.ports import JobRecord, Page
 from store.settings import StoreSettings
@@ -39,7 +41,8 @@ class RedisJobs:
         with self._client.pipeline() as pipe:
             pipe.hset(keys.record(record.id), mapping=cast(Any, codec.record_fields(record)))
             pipe.set(keys.problem(record.id), codec.pack(problem))
-            pipe.zadd(keys.owner(record.owner), {record.id: record.created})
+            if record.kind is JobKind.SOLVE:
+                pipe.zadd(keys.owner(record.owner), {record.id: record.created})
             pipe.sadd(keys.LIVE, record.id)
             pipe.xadd(keys.events(record.id), {"event": event})
             pipe.execute()
@@ -92,22 +95,22 @@ class RedisJobs:
         self, owner: str, after: tuple[float, str] | None
     ) -> list_of[tuple[float, str, JobRecord | None]]:
         """The next entries of the owner's index; those of forgotten records are swept out."""
-        index, start = keys.owner(owner), 0
-        if after is not None:
-            # Entries of one instant are ordered by id; those up to the cursor are skipped.
-            start = self._client.zcount(index, f"({after[0]!r}", "+inf")
-            same = cast(Any, self._client.zrevrangebyscore(index, after[0], after[0]))
-            start += sum(member.decode() >= after[1] for member in same)
-        entries = cast(
-            Any, self._client.zrevrange(index, start, start + _CHUNK - 1, withscores=True)
-        )
-        ids = [member.decode() for member, _ in entries]
-        records = self._records(ids)
-        forgotten = [job_id for job_id, record in zip(ids, records, strict=True) if not record]
+        index = keys.owner(owner)
+        found = entries(self._client, index, after, _CHUNK)
+        records = self._records([job_id for _, job_id in found])
+        chunk = [
+            (created, job_id, record)
+            for (created, job_id), record in zip(found, records, strict=True)
+        ]
+        forgotten = [job_id for _, job_id, record in chunk if not record]
         if forgotten:
             self._client.zrem(index, *forgotten)
-        scores = [float(score) for _, score in entries]
-        return [*zip(scores, ids, records, strict=True)]
+        return chunk
+
+    @translated
+    def many(self, job_ids: Sequence[str]) -> list_of[JobRecord | None]:
+        """The records of several jobs at once."""
+        return self._records([*job_ids])
 
     def _records(self, ids: list_of[str]) -> list_of[JobRecord | None]:
         with self._client.pipeline(transaction=False) as pipe:

@@ -45,6 +45,41 @@ def of_job(job_id: str) -> tuple[str, ...]:
     return tuple(name(job_id) for name in (record, problem, result, report, events))
 
 
+def sweep(sweep_id: str) -> str:
+    """Hash: the sweep's record."""
+    return f"footfall:sweep:{sweep_id}"
+
+
+def sweep_plan(sweep_id: str) -> str:
+    """The sweep's plan, compressed."""
+    return f"footfall:sweep:{sweep_id}:plan"
+
+
+def sweep_ended(sweep_id: str) -> str:
+    """Hash: index of a point that has ended -> its outcome as JSON."""
+    return f"footfall:sweep:{sweep_id}:ended"
+
+
+def sweep_begun(sweep_id: str) -> str:
+    """Hash: index of a point -> how often it was begun."""
+    return f"footfall:sweep:{sweep_id}:begun"
+
+
+def sweep_result(sweep_id: str, index: int) -> str:
+    """The result of one point, compressed."""
+    return f"footfall:sweep:{sweep_id}:result:{index}"
+
+
+def of_sweep(sweep_id: str) -> tuple[str, ...]:
+    """Every key of one sweep but those of its points' results."""
+    return tuple(name(sweep_id) for name in (sweep, sweep_plan, sweep_ended, sweep_begun))
+
+
+def sweeps_of(name: str) -> str:
+    """Sorted set: an owner's sweep ids by the time of their creation."""
+    return f"footfall:sweeps:{name}"
+
+
 def owner(name: str) -> str:
     """Sorted set: an owner's job ids by the time of their creation."""
     return f"footfall:owner:{name}"

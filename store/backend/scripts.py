@@ -69,3 +69,31 @@ end
 redis.call('PUBLISH', ARGV[4], ARGV[1])
 return 1
 """
+
+BEGIN_POINT = """
+-- Count one more beginning of a point by the live attempt.
+-- KEYS: job's record, begun, sweep's record. ARGV: token, index
+local status = redis.call('HGET', KEYS[1], 'status')
+if status ~= 'running' and status ~= 'cancelling' then return 0 end
+if redis.call('HGET', KEYS[1], 'token') ~= ARGV[1] then return 0 end
+if redis.call('EXISTS', KEYS[3]) == 0 then return 0 end
+return redis.call('HINCRBY', KEYS[2], ARGV[2], 1)
+"""
+
+END_POINT = """
+-- The end of a point, once: its outcome, result and event.
+-- KEYS: job's record, job's events, result, ended, begun, sweep's record, plan
+-- ARGV: job's id, token, index, outcome, result or '', event, events limit, channel, retention,
+--       memory
+local status = redis.call('HGET', KEYS[1], 'status')
+if status ~= 'running' and status ~= 'cancelling' then return 0 end
+if redis.call('HGET', KEYS[1], 'token') ~= ARGV[2] then return 0 end
+if redis.call('EXISTS', KEYS[6]) == 0 then return 0 end
+-- A retry of a call whose reply was lost finds its work done.
+if redis.call('HSETNX', KEYS[4], ARGV[3], ARGV[4]) == 0 then return 1 end
+if ARGV[5] ~= '' then redis.call('SET', KEYS[3], ARGV[5], 'EX', ARGV[9]) end
+redis.call('XADD', KEYS[2], 'MAXLEN', '~', ARGV[7], '*', 'event', ARGV[6])
+redis.call('PUBLISH', ARGV[8], ARGV[1])
+for i = 4, 7 do redis.call('EXPIRE', KEYS[i], ARGV[10]) end
+return 1
+"""

@@ -9,6 +9,7 @@ from store.backend.jobs import RedisJobs
 from store.backend.queue import RedisQueue
 from store.backend.results import RedisResults
 from store.backend.server import Server
+from store.backend.sweeps import RedisSweeps
 from store.ports import Store
 from store.settings import SHORT, Patience, StoreSettings
 
@@ -40,6 +41,7 @@ def assemble(client: Redis, settings: StoreSettings) -> Store:
 
     return Store(
         jobs=RedisJobs(client, settings),
+        sweeps=RedisSweeps(client, settings),
         results=RedisResults(client),
         events=events,
         queue=RedisQueue(client, settings),

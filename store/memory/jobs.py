@@ -3,12 +3,13 @@
 import time
 import uuid
 from builtins import list as list_of
+from collections.abc import Sequence
 from dataclasses import asdict, replace
 from typing import Any
 
 from schemas.errors import Conflict, UnknownJob
 from schemas.events import StateChanged
-from schemas.jobs import TERMINAL, JobError, JobStatus, JobTimings, Progress
+from schemas.jobs import TERMINAL, JobError, JobKind, JobStatus, JobTimings, Progress
 from store import cursors
 from store.memory.shelf import Entry, Shelf
 from store.moves import Changes, allowed, ending, is_due
@@ -39,6 +40,12 @@ class MemoryJobs:
                 entry.result = entry.report = None
             return entry.record
 
+    def many(self, job_ids: Sequence[str]) -> list_of[JobRecord | None]:
+        """The records of several jobs at once."""
+        with self._shelf.lock:
+            known = self._shelf.entries
+            return [self.get(job_id) if job_id in known else None for job_id in job_ids]
+
     def problem(self, job_id: str) -> bytes:
         """The stored problem."""
         with self._shelf.lock:
@@ -61,6 +68,7 @@ class MemoryJobs:
             record
             for record in records
             if record.owner == owner
+            and record.kind is JobKind.SOLVE
             and status in (None, record.status)
             and name in (None, record.name)
             and (after is None or (record.created, record.id) < after)

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 
 from schemas.errors import UnknownJob
 from schemas.events import Event
-from store.ports import JobRecord, LoggedEvent
+from schemas.sweeps import PointOutcome
+from store.ports import JobRecord, LoggedEvent, SweepRecord
 from store.settings import StoreSettings
 
 
@@ -24,12 +25,25 @@ class Entry:
 
 
 @dataclass(slots=True)
+class SweepEntry:
+    """All that is kept of one sweep; ``expires`` is when it is forgotten."""
+
+    record: SweepRecord
+    plan: bytes
+    expires: float
+    ended: dict[int, PointOutcome] = field(default_factory=dict)
+    begun: dict[int, int] = field(default_factory=dict)
+    results: dict[int, tuple[bytes, float]] = field(default_factory=dict)
+
+
+@dataclass(slots=True)
 class Shelf:
-    """The entries by job id. Every access holds ``lock``."""
+    """The entries by job id, and those of sweeps. Every access holds ``lock``."""
 
     settings: StoreSettings
     lock: threading.RLock = field(default_factory=threading.RLock)
     entries: dict[str, Entry] = field(default_factory=dict)
+    sweeps: dict[str, SweepEntry] = field(default_factory=dict)
     waiting: list[tuple[str, threading.Event]] = field(default_factory=list)
 
     def entry(self, job_id: str) -> Entry:

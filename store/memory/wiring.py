@@ -4,6 +4,7 @@ from store.memory.documents import MemoryEvents, MemoryIdempotency, MemoryResult
 from store.memory.jobs import MemoryJobs
 from store.memory.queue import MemoryQueue
 from store.memory.shelf import Shelf
+from store.memory.sweeps import MemorySweeps
 from store.ports import Store
 from store.settings import StoreSettings
 
@@ -13,6 +14,7 @@ def connect(settings: StoreSettings | None = None) -> Store:
     shelf = Shelf(settings or StoreSettings())
     return Store(
         jobs=MemoryJobs(shelf),
+        sweeps=MemorySweeps(shelf),
         results=MemoryResults(shelf),
         events=MemoryEvents(shelf),
         queue=MemoryQueue(shelf.settings.queue_limit),

@@ -36,7 +36,7 @@ def console(browser: Browser, url: str, complaints: list[str]) -> Iterator[Page]
 
 def replace(page: Page, old: str, new: str) -> None:
     """Edit the problem as a person would."""
-    page.locator("summary").click()
+    page.locator("#post-form summary").click()
     area = page.locator("#problem")
     text = area.input_value()
     assert old in text
@@ -79,6 +79,19 @@ def test_an_edited_problem_is_the_one_that_is_solved(console: Page, url: str) ->
         assert client.result(job_id).document["name"].startswith("mine: <b>")
 
 
+def test_a_sweep_shows_its_points(console: Page, url: str, complaints: list[str]) -> None:
+    with Client(url) as client:
+        problem = examples.load("block_min_force") | {"name": "<b>bold</b>"}
+        client.wait_sweep(client.sweep(problem, grid={"/phases/0/time/final": [1, 2]}).id)
+    sweep = console.locator("#sweeps details").first
+    expect(sweep).to_contain_text("<b>bold</b>: succeeded, 2 of 2 points", timeout=SECONDS)
+    sweep.locator("summary").click()
+    expect(sweep.locator("tr").nth(2)).to_contain_text("1.5000000")
+    expect(sweep.locator("tr").nth(2)).to_contain_text("converged")
+    assert sweep.get_by_role("link", name="result").count() == 2
+    assert complaints == []
+
+
 def test_a_refused_problem_names_place_reason_and_mend(console: Page) -> None:
     console.select_option("#example", "cart_pole")
     expect(console.locator("#problem")).to_have_value(re.compile("cart-pole swing-up"))
@@ -96,7 +109,7 @@ def test_a_refused_problem_names_place_reason_and_mend(console: Page) -> None:
 def test_a_running_job_is_cancelled(console: Page) -> None:
     slow = examples.load("cart_pole") | {"refinement": None, "solver": {"tolerance": 1.1e-14}}
     slow["method"] = {"kind": "trapezoidal", "segments": 5000}
-    console.locator("summary").click()
+    console.locator("#post-form summary").click()
     console.locator("#problem").fill(json.dumps(slow))
     console.get_by_role("button", name="Solve").click()
     row = console.locator("#jobs tr").first

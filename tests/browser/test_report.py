@@ -128,13 +128,50 @@ def test_names_that_are_markup_stay_text(
     assert complaints == []
 
 
+def test_several_phases_share_one_time_axis(
+    result: Result, page: Page, tmp_path: Path, complaints: list[str]
+) -> None:
+    document = result.document
+    first = document["phases"][0]
+    later = first | {
+        "name": "again",
+        "knots": [time + 2.0 for time in first["knots"]],
+        "curves": {
+            group: curves | {"breaks": [time + 2.0 for time in curves["breaks"]]}
+            for group, curves in first["curves"].items()
+        },
+        "groups": {
+            "costates": {"time": [2.0, 4.0], "values": {"q1": [1.0, 2.0]}},
+        },
+    }
+    path = tmp_path / "phases.html"
+    path.write_text(render(document | {"phases": [first, later]}), encoding="utf-8")
+    page.goto(path.as_uri())
+    states = page.locator("figure").first
+    expect(states.locator("text.phase")).to_have_text(["swing_up", "again"])
+    bands = [states.locator("rect.band").nth(index).bounding_box() for index in (0, 1)]
+    assert bands[0] is not None
+    assert bands[1] is not None
+    assert bands[1]["x"] == pytest.approx(bands[0]["x"] + bands[0]["width"], abs=1)
+    page.mouse.move(bands[1]["x"] + bands[1]["width"] / 2, bands[1]["y"] + 50)
+    shown = number(states.locator("output").first.inner_text())
+    time = number(states.locator(".now").inner_text().split()[2])
+    assert shown == pytest.approx(float(result["q1"](time - 2.0)), abs=2e-4)
+    costates = page.locator("details").filter(has_text="Costates")
+    expect(costates.locator("figure").first).to_be_hidden()
+    costates.locator("summary").click()
+    expect(costates.locator("figure").first).to_be_visible()
+    assert complaints == []
+
+
 def test_without_script_it_is_complete(result: Result, browser: Browser, tmp_path: Path) -> None:
     path = tmp_path / "report.html"
     path.write_text(render(result.document), encoding="utf-8")
     context = browser.new_context(java_script_enabled=False)
     page = context.new_page()
     page.goto(path.as_uri())
-    assert page.locator("figure path.curve").count() == 5 + len(result.mesh) + 2
+    drawn = page.locator("figure path.curve:not(details *)").count()
+    assert drawn == 5 + len(result.mesh) + 2
     context.close()
 
 

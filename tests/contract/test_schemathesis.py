@@ -22,10 +22,11 @@ from schemathesis.specs.openapi.checks import (
 import examples
 from api.app import create_app
 from api.settings import ApiSettings
-from schemas.jobs import JobStatus
+from schemas.jobs import JobKind, JobStatus
 from schemas.reading import canonical, read_problem
+from schemas.sweeps import PointOutcome, PointStatus, SweepPlan
 from store.memory import connect
-from store.ports import JobRecord
+from store.ports import JobRecord, SweepRecord
 from tests.support.solutions import block_move
 
 CHECKS = [
@@ -75,6 +76,49 @@ def failed() -> str:
     return job_id
 
 
+def sweep() -> str:
+    """A sweep of two points, one of which has ended."""
+    sweep_id, job_id = f"{next(numbers):032x}", f"{next(numbers):032x}"
+    problem = examples.load("block_min_force")
+    values = [{"/phases/0/time/final": final} for final in (1, 2)]
+    plan = SweepPlan(
+        name="block",
+        kind="points",
+        base=problem,
+        points=values,
+        chunk=2,
+        warm=True,
+        seconds=60,
+        megabytes=512,
+    )
+    record = SweepRecord(sweep_id, "local", "block", 1.7e9, total=2, chunk=2, jobs=(job_id,))
+    STORE.sweeps.create(record, plan.model_dump_json().encode())
+    job = JobRecord(
+        job_id,
+        "local",
+        "block (1/1)",
+        "0" * 64,
+        JobStatus.QUEUED,
+        created=1.7e9,
+        kind=JobKind.SWEEP_CHUNK,
+        sweep=sweep_id,
+        points=2,
+    )
+    STORE.jobs.create(job, b"{}")
+    running = STORE.jobs.claim(job_id, "hand")
+    assert running is not None
+    ended = PointOutcome(status=PointStatus.SUCCEEDED, solution_status="converged", objective=12.0)
+    STORE.sweeps.end(sweep_id, 0, running, ended, RESULT)
+    return sweep_id
+
+
+def ended_sweep() -> str:
+    sweep_id = sweep()
+    STORE.jobs.move(STORE.sweeps.get(sweep_id).jobs[0], JobStatus.FAILED, expect=RUNNING)
+    return sweep_id
+
+
+SWEEPS = cycle([sweep, ended_sweep, None])
 GALLERY = cycle([None, None, *map(examples.load, examples.names())])
 LIVE, ENDED = cycle([queued, solved, running, solved, failed, None]), cycle([solved, failed, None])
 
@@ -91,6 +135,10 @@ def map_path_parameters(context: HookContext, path_parameters: Any) -> Any:
         make = next(ENDED if path_of(context).endswith("/events") else LIVE)
         if make is not None:
             path_parameters["job_id"] = make()
+    if path_parameters and "sweep_id" in path_parameters:
+        make = next(SWEEPS)
+        if make is not None:
+            path_parameters["sweep_id"] = make()
     return path_parameters
 
 
@@ -105,7 +153,10 @@ def map_query(context: HookContext, query: Any) -> Any:
 @schema.hook
 def map_body(context: HookContext, body: Any) -> Any:
     """Post good problems too; no generator writes one."""
-    return (next(GALLERY) or body) if path_of(context) == "/v1/jobs" else body
+    problem = next(GALLERY)
+    if problem and path_of(context) == "/v1/sweeps":
+        return {"problem": problem, "grid": {"/phases/0/name": ["one", "two"]}}
+    return (problem or body) if path_of(context) == "/v1/jobs" else body
 
 
 @schema.parametrize()

@@ -24,6 +24,8 @@ def client(options: argparse.Namespace) -> Client:
 def submit(options: argparse.Namespace) -> int:
     """Queue a problem and print the job's id; with --watch go on to its result."""
     problem = read_json(options.file)
+    if options.guess_from:
+        problem["guess"] = {"from_job": options.guess_from}
     if options.watch:
         check_places(options.output, options.report)
         return solve_through(options, problem)

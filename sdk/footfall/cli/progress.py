@@ -79,7 +79,7 @@ class _LiveTable:
             self._stage = words(event.data["status"])
         elif event.type == "mesh":
             self._meshes.append(event.data)
-        else:
+        elif event.type == "nlp_iteration":
             data = event.data
             self._iteration = f"iteration {data['iteration']}: {_iteration_words(data)}"
 

@@ -5,7 +5,7 @@ import sys
 from collections.abc import Callable, Mapping
 from importlib.metadata import version
 
-from footfall.cli import codes, gallery, jobs, service, solving
+from footfall.cli import codes, gallery, jobs, service, solving, sweeping
 from footfall.client import DEFAULT_URL
 
 Run = Callable[[argparse.Namespace], int]
@@ -68,6 +68,7 @@ def parser(environment: Mapping[str, str]) -> argparse.ArgumentParser:
     words = _Words(environment)
     _solving(words)
     _jobs(words)
+    _sweeps(words)
     _service(words)
     return words.top
 
@@ -110,6 +111,8 @@ def _jobs(words: _Words) -> None:
     )
     _problem(submit)
     submit.add_argument("--watch", action="store_true", help="follow it and print the result")
+    warm = "start from the solution of this job of yours"
+    submit.add_argument("--guess-from", metavar="JOB", help=warm)
     watch = words.remote(
         "watch", jobs.watch, "follow a job to its end and print the result", "footfall watch ID"
     )
@@ -131,6 +134,31 @@ def _jobs(words: _Words) -> None:
     )
     result.add_argument("id", help="the job's id")
     _files(result)
+
+
+def _sweeps(words: _Words) -> None:
+    sweep = words.remote(
+        "sweep",
+        sweeping.sweep,
+        "solve a problem at many places through the service",
+        "footfall sweep examples/cart_pole.json --grid /phases/0/system/parameters/m1=0.5,1,2",
+    )
+    what = "the problem's JSON file, or that of a whole sweep, or - for stdin"
+    sweep.add_argument("file", metavar="FILE", help=what)
+    over = sweep.add_mutually_exclusive_group()
+    over.add_argument(
+        "--grid",
+        metavar="POINTER=VALUES",
+        action="append",
+        help="values for a place in the problem, comma between them; again for more places",
+    )
+    over.add_argument("--multistart", type=_count, metavar="N", help="so many guesses instead")
+    sweep.add_argument(
+        "--chunk", type=_count, metavar="N", help="points that a job solves in a row"
+    )
+    cold = "start each point from the problem's guess, not from the solution before"
+    sweep.add_argument("--cold", action="store_true", help=cold)
+    sweep.add_argument("--detach", action="store_true", help="do not wait; print the sweep's id")
 
 
 def _service(words: _Words) -> None:

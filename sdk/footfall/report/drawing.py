@@ -11,10 +11,12 @@ from typing import Any
 import numpy as np
 
 from footfall.curves import Floats
-from footfall.report.figures import Figure, Series
+from footfall.report.figures import TOGETHER, Figure, Series
 from footfall.report.markup import Child, Markup, el, join
+from footfall.report.phases import Band, Level
 
 _SIZE = 1000
+_LETTER = 0.011  # of a figure's width, on a screen that is not small
 
 
 def frame(figure: Figure, ticks: tuple[int, int] = (10, 6), **box: Child) -> Markup:
@@ -23,6 +25,7 @@ def frame(figure: Figure, ticks: tuple[int, int] = (10, 6), **box: Child) -> Mar
     mark = _mark(figure) if figure.mark else None
     data = el(
         "svg",
+        *(_band(figure, band, index) for index, band in enumerate(figure.bands)),
         _level(figure, figure.mark[0], "mark") if figure.mark else None,
         *lines,
         class_="data",
@@ -31,7 +34,8 @@ def frame(figure: Figure, ticks: tuple[int, int] = (10, 6), **box: Child) -> Mar
         width="100%",
         height="100%",
     )
-    return el("svg", _axes(figure, ticks), data, mark, overflow="visible", **box)
+    names = _band_names(figure)
+    return el("svg", _axes(figure, ticks), data, names, mark, overflow="visible", **box)
 
 
 def pointer_data(figure: Figure) -> dict[str, Any]:
@@ -75,7 +79,7 @@ def _series(figure: Figure, item: Series) -> Markup:
         dots = el("path", class_=few, d=_dots(*_place(figure, *item.nodes)))
     return el(
         "g",
-        *(_level(figure, level, "bound") for level in item.limits),
+        *(_level(figure, level.value, "bound", level) for level in item.limits),
         el("path", class_="curve", d=_line(*_place(figure, item.time, item.value))),
         dots,
         class_=f"series {item.style}",
@@ -83,9 +87,38 @@ def _series(figure: Figure, item: Series) -> Markup:
     )
 
 
-def _level(figure: Figure, level: float, kind: str) -> Markup:
-    y = f"{_SIZE * (1 - float(figure.y.at(level))):.1f}"
-    return el("line", class_=kind, x1=0, x2=_SIZE, y1=y, y2=y)
+def _level(figure: Figure, value: float, kind: str, span: Level | None = None) -> Markup:
+    y = f"{_SIZE * (1 - float(figure.y.at(value))):.1f}"
+    ends = (span.start, span.end) if span else (figure.x.low, figure.x.high)
+    x1, x2 = (f"{_SIZE * float(figure.x.at(end)):.1f}" for end in ends)
+    return el("line", class_=kind, x1=x1, x2=x2, y1=y, y2=y)
+
+
+def _band(figure: Figure, band: Band, index: int) -> Markup:
+    """A tint over a phase's time, and a line where it begins."""
+    start, end = (_SIZE * float(figure.x.at(time)) for time in (band.start, band.end))
+    tint = el(
+        "rect",
+        el("title", band.name),
+        class_=f"band s{index % TOGETHER}",
+        x=f"{start:.1f}",
+        width=f"{max(end - start, 0.0):.1f}",
+        height=_SIZE,
+    )
+    x = f"{start:.1f}"
+    return join(tint, el("line", class_="boundary", x1=x, x2=x, y1=0, y2=_SIZE) if index else None)
+
+
+def _band_names(figure: Figure) -> Markup:
+    """The names of the phases that are wide enough for them, on top of the frame."""
+    shares = [figure.x.at([band.start, band.end]) for band in figure.bands]
+    return join(
+        *(
+            el("text", band.name, class_="phase", x=f"{50 * (start + end):.3f}%", y="0", dy="14")
+            for band, (start, end) in zip(figure.bands, shares, strict=True)
+            if end - start > _LETTER * len(band.name)
+        )
+    )
 
 
 def _mark(figure: Figure) -> Markup | None:

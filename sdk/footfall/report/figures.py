@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from footfall.curves import Curve, Curves, Floats
-from footfall.report.limits import Limits
+from footfall.curves import Curve, Floats
+from footfall.report.phases import Band, Level, Phase, Track, bands, groups, tracks
 from footfall.report.scales import Scale, linear, logarithmic, scientific
 
 TOGETHER = 6
@@ -30,12 +30,15 @@ class Series:
     value: Floats
     curve: Curve
     nodes: tuple[Floats, Floats] | None = None
-    limits: tuple[float, ...] = ()
+    limits: tuple[Level, ...] = ()
 
 
 @dataclass(frozen=True)
 class Figure:
-    """One plot over time. ``mark`` is a labelled level across it, ``unit`` that of x."""
+    """One plot over time. ``mark`` is a labelled level across it, ``unit`` that of x.
+
+    ``bands`` are the parts of the axis that belong to several phases.
+    """
 
     title: str
     series: list[Series]
@@ -44,16 +47,18 @@ class Figure:
     mark: tuple[float, str] | None = None
     notes: list[str] = field(default_factory=list)
     unit: str = " s"
+    bands: list[Band] = field(default_factory=list)
+    group: str = ""
 
 
-def trajectories(phase: Mapping[str, Any], limits: Limits) -> Iterator[Figure]:
-    """The plots of one phase, group by group."""
-    for group, document in phase["curves"].items():
-        curves = Curves.from_dict(document)
-        nodes = phase["groups"].get(group)
-        names = iter(curves)
-        while chunk := list(islice(names, TOGETHER)):
-            yield _trajectory(group, {name: curves[name] for name in chunk}, nodes, limits)
+def trajectories(
+    phases: Sequence[Phase], problem: Mapping[str, Any] | None = None
+) -> Iterator[Figure]:
+    """The plots of all phases over one time axis, group by group, with the problem's bounds."""
+    for group in groups(phases):
+        series = tracks(group, phases, problem)
+        while chunk := list(islice(series, TOGETHER)):
+            yield _trajectory(group, chunk, phases)
 
 
 def mesh_errors(refinement: Mapping[str, Any]) -> Figure | None:
@@ -89,8 +94,8 @@ def convergence(refinement: Mapping[str, Any]) -> list[Figure]:
     levels = [*[e for e in errors if e], *([tolerance] if tolerance else [])]
     mark = (tolerance, f"tolerance {scientific(tolerance, 3)}") if tolerance else None
     axis = Scale(0.7, len(meshes) + 0.3, whole=True)
-    error = _points("largest error", "s0", count, errors)
-    objective = _points("objective", "s1", count, values)
+    error = points("largest error", "s0", count, errors)
+    objective = points("objective", "s1", count, values)
     height = linear([v for v in values if v is not None], 0.15)
     return [
         Figure("Largest error", [error], axis, logarithmic(levels), mark, unit=""),
@@ -98,25 +103,31 @@ def convergence(refinement: Mapping[str, Any]) -> list[Figure]:
     ]
 
 
-def _trajectory(
-    group: str, curves: Mapping[str, Curve], nodes: Mapping[str, Any] | None, limits: Limits
-) -> Figure:
-    breaks = next(iter(curves.values())).breaks
-    times = _drawing_times(breaks)
-    drawn = {name: curve(times) for name, curve in curves.items()}
-    extent = linear(float(v) for values in drawn.values() for v in (values.min(), values.max()))
-    every = _stride(nodes)
+def points(label: str, style: str, across: Floats, raw: Sequence[float | None]) -> Series:
+    """A series that is known at some places only, joined by straight lines."""
+    values = np.array(raw, dtype=float)
+    still = Curve([across[0], across[-1]], [[0.0]])
+    return Series(label, style, across, values, still, (across, values))
+
+
+def _trajectory(group: str, chunk: Sequence[Track], phases: Sequence[Phase]) -> Figure:
+    x = _time_axis(phases[0]["knots"][0], phases[-1]["knots"][-1])
+    lines = [_with_jumps(track.curve, _drawing_times(track.curve.breaks)) for track in chunk]
+    values = np.concatenate([value for _, value in lines])
+    extent = linear(values[np.isfinite(values)].tolist())
+    most = max((len(track.nodes[0]) for track in chunk if track.nodes), default=0)
+    every = max(1, math.ceil(most / _MARKS))
     series, notes = [], [f"every {every}th node marked"] if every > 1 else []
-    for index, (name, curve) in enumerate(curves.items()):
-        near = tuple(level for level in limits.get(name, ()) if _is_near(level, extent))
-        if len(near) < len(limits.get(name, ())):
-            notes.append(f"a bound of {name} lies outside of the picture")
-        marked = _marked(name, nodes, every)
-        series.append(Series(name, f"s{index}", *_with_jumps(curve, times), curve, marked, near))
-    levels = [level for item in series for level in item.limits]
-    ends = [extent.low, extent.high]
-    y = linear([*ends, *levels], 0.04) if levels else extent
-    return Figure(group.capitalize(), series, _time_axis(breaks[0], breaks[-1]), y, notes=notes)
+    for index, (track, line) in enumerate(zip(chunk, lines, strict=True)):
+        near = tuple(level for level in track.levels if _is_near(level.value, extent))
+        if len(near) < len(track.levels):
+            notes.append(f"a bound of {track.name} lies outside of the picture")
+        marked = (track.nodes[0][::every], track.nodes[1][::every]) if track.nodes else None
+        series.append(Series(track.name, f"s{index}", *line, track.curve, marked, near))
+    levels = [level.value for item in series for level in item.limits]
+    y = linear([extent.low, extent.high, *levels], 0.04) if levels else extent
+    title = group.capitalize()
+    return Figure(title, series, x, y, notes=notes, bands=bands(phases), group=group)
 
 
 def _drawing_times(breaks: Floats) -> Floats:
@@ -132,8 +143,11 @@ def _with_jumps(curve: Curve, times: Floats) -> tuple[Floats, Floats]:
     """The line's points, with a break wherever the curve jumps."""
     inner = curve.breaks[1:-1]
     before, after = curve(inner, side="left"), curve(inner)
-    height = np.ptp(curve(times)) if len(times) else 0.0
-    jumps = np.abs(after - before) > 1e-3 * max(height, 1e-12)
+    known = curve(times)
+    known = known[np.isfinite(known)]
+    height = np.ptp(known) if len(known) else 0.0
+    ends = np.isfinite(before) != np.isfinite(after)
+    jumps = ends | (np.abs(after - before) > 1e-3 * max(height, 1e-12))
     where = inner[jumps]
     time = np.concatenate([times, where, where])
     value = np.concatenate([curve(times), before[jumps], np.full(len(where), np.nan)])
@@ -141,18 +155,6 @@ def _with_jumps(curve: Curve, times: Floats) -> tuple[Floats, Floats]:
         (np.r_[np.full(len(times), 2), np.zeros(len(where)), np.ones(len(where))], time)
     )
     return time[order], value[order]
-
-
-def _stride(nodes: Mapping[str, Any] | None) -> int:
-    return math.ceil(len(nodes["time"]) / _MARKS) if nodes else 1
-
-
-def _marked(name: str, nodes: Mapping[str, Any] | None, every: int) -> tuple[Floats, Floats] | None:
-    if nodes is None or name not in nodes["values"]:
-        return None
-    time = np.asarray(nodes["time"], dtype=float)
-    value = np.array(nodes["values"][name], dtype=float)
-    return time[::every], value[::every]
 
 
 def _is_near(level: float, extent: Scale) -> bool:
@@ -169,12 +171,6 @@ def _steps(mesh: Mapping[str, Any], style: str, number: int) -> Series:
     value = np.column_stack([errors, errors, after]).ravel()
     curve = Curve(np.append(spans[:, 0], spans[-1, 1]), errors[:, None])
     return Series(f"mesh {number}, {len(spans)} segments", style, time, value, curve)
-
-
-def _points(label: str, style: str, count: Floats, raw: Sequence[float | None]) -> Series:
-    values = np.array(raw, dtype=float)
-    still = Curve([count[0], count[-1]], [[0.0]])
-    return Series(label, style, count, values, still, (count, values))
 
 
 def _age(position: int, count: int) -> str:

@@ -2,17 +2,17 @@
 
 import json
 from base64 import b64encode
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from hashlib import sha256
 from typing import Any
 
 from footfall.report.drawing import pointer_data, script_json
-from footfall.report.figures import Figure, convergence, mesh_errors, trajectories
-from footfall.report.limits import limits_of
+from footfall.report.figures import TOGETHER, Figure, convergence, mesh_errors, trajectories
 from footfall.report.markup import Markup, asset, el, join, void
+from footfall.report.phases import COSTATES
 from footfall.report.plots import plot
 from footfall.report.scales import scientific
-from footfall.report.tables import checks, meshes, pairs, residuals
+from footfall.report.tables import checks, meshes, minima, pairs, residuals, stages
 from footfall.summary import VERDICTS, plural, published_mesh, words
 
 _STANDING = {"converged": "good", "acceptable": "fair", "cancelled": "quiet"}
@@ -39,7 +39,8 @@ def render(result: Mapping[str, Any], problem: Mapping[str, Any] | None = None) 
         "main",
         _header(result),
         _remarks(result),
-        *(_phase(result, phase, problem, figures) for phase in result["phases"]),
+        _trajectory(result, problem, figures),
+        _steps(result),
         _certificate(result["certificate"]),
         _mesh(result["mesh_refinement"], figures),
         _solver(result),
@@ -107,23 +108,67 @@ def _remarks(result: Mapping[str, Any]) -> Markup | None:
     return el("ul", *remarks, class_="remarks") if remarks else None
 
 
-def _phase(
-    result: Mapping[str, Any],
-    phase: Mapping[str, Any],
-    problem: Mapping[str, Any] | None,
-    figures: list[Figure],
-) -> Markup:
-    found = list(trajectories(phase, limits_of(problem, phase["name"])))
-    title = "Trajectory" if len(result["phases"]) == 1 else f"Phase {phase['name']}"
-    plots = [
-        _numbered(figure, figures, "tall" if i == 0 else "low") for i, figure in enumerate(found)
-    ]
+def _trajectory(
+    result: Mapping[str, Any], problem: Mapping[str, Any] | None, figures: list[Figure]
+) -> Markup | None:
+    """All phases over one time axis; the costates folded away."""
+    all_phases = result["phases"]
+    if not all_phases:
+        return None
+    found = list(trajectories(all_phases, problem))
+    plots = {
+        id(figure): _numbered(figure, figures, "low" if index else "tall")
+        for index, figure in enumerate(found)
+    }
+    costates = [plots[id(figure)] for figure in found if figure.group == COSTATES]
+    return _section(
+        "Trajectory",
+        _phases(all_phases)
+        if len(all_phases) > 1
+        else el("p", _span(all_phases[0]), class_="lead"),
+        *(plots[id(figure)] for figure in found if figure.group != COSTATES),
+        el("details", el("summary", "Costates"), *costates) if costates else None,
+        *map(_integrals, all_phases),
+        join(el("h3", "Static parameters"), _values(result["static"]))
+        if result.get("static")
+        else None,
+    )
+
+
+def _span(phase: Mapping[str, Any]) -> str:
     start, end = phase["knots"][0], phase["knots"][-1]
     size = plural(len(phase["knots"]) - 1, "segment")
-    span = f"{phase['name']}: {scientific(start, 6)} to {scientific(end, 6)} s, {size}"
-    sums = {name: scientific(value, 10) for name, value in phase.get("integrals", {}).items()}
-    integrals = join(el("h3", "Integrals"), pairs(sums)) if sums else None
-    return _section(title, el("p", span, class_="lead"), *plots, integrals)
+    return f"{phase['name']}: {scientific(start, 6)} to {scientific(end, 6)} s, {size}"
+
+
+def _phases(all_phases: Sequence[Mapping[str, Any]]) -> Markup:
+    """One line for each phase, in its colour."""
+    lines = [
+        el("li", el("span", "", class_=f"chip s{index % TOGETHER}"), _span(phase))
+        for index, phase in enumerate(all_phases)
+    ]
+    return el("ol", *lines, class_="phases")
+
+
+def _integrals(phase: Mapping[str, Any]) -> Markup | None:
+    sums = phase.get("integrals", {})
+    return join(el("h3", f"Integrals of {phase['name']}"), _values(sums)) if sums else None
+
+
+def _values(numbers: Mapping[str, float | None]) -> Markup:
+    return pairs({name: scientific(value, 10) for name, value in numbers.items()})
+
+
+def _steps(result: Mapping[str, Any]) -> Markup | None:
+    """The stages solved in a row, and the distinct minima, where there are any."""
+    found, several = result.get("stages", []), result.get("minima", [])
+    if not found and not several:
+        return None
+    return _section(
+        "Stages and minima" if found and several else "Stages" if found else "Distinct minima",
+        stages(found) if found else None,
+        minima(several) if several else None,
+    )
 
 
 def _certificate(certificate: Mapping[str, Any]) -> Markup:
@@ -162,13 +207,16 @@ def _solver(result: Mapping[str, Any]) -> Markup:
     facts = {
         "backend": solver["backend"],
         "its own status": solver["status"],
+        "strategy": words(solver.get("strategy", "default")),
         "iterations on the last mesh": solver["iterations"],
         "variables": solver["variables"],
         "constraints": solver["constraints"],
     }
     ranked = solver["residuals"]
     worst = join(el("h3", "Largest residuals"), residuals(ranked)) if ranked else None
-    return _section("Solver", pairs(facts), el("h3", "Time"), _timing(timing), worst)
+    tried = [el("li", text) for text in solver.get("attempts", [])]
+    before = join(el("h3", "Attempts before"), el("ol", *tried)) if tried else None
+    return _section("Solver", pairs(facts), before, el("h3", "Time"), _timing(timing), worst)
 
 
 def _timing(timing: Mapping[str, float]) -> Markup:

@@ -1,12 +1,12 @@
 """The figure of a result as one SVG file, for a README or a slide."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from footfall.report.drawing import frame
 from footfall.report.figures import Figure, mesh_errors, trajectories
-from footfall.report.limits import limits_of
 from footfall.report.markup import Markup, asset, el
+from footfall.report.phases import COSTATES
 from footfall.report.scales import scientific
 from footfall.summary import VERDICTS, plural, published_mesh, words
 
@@ -20,16 +20,27 @@ def render_svg(
     """The trajectories and the mesh errors of a result as one standalone SVG.
 
     It follows the reader's light or dark scheme and loads nothing. Parameters as ``render``;
-    ``errors`` false leaves the mesh errors out.
+    ``errors`` false leaves the mesh errors out. Costates are left to the page.
     """
-    figures = [
-        figure
-        for phase in result["phases"]
-        for figure in trajectories(phase, limits_of(problem, phase["name"]))
-    ]
+    found = trajectories(result["phases"], problem)
+    figures = [figure for figure in found if figure.group != COSTATES]
+    heights = [220 if index == 0 else 140 for index in range(len(figures))]
     steps = mesh_errors(result["mesh_refinement"]) if errors else None
-    heights = [220 if index == 0 else 140 for index in range(len(figures))] + [150] * bool(steps)
-    figures += [steps] if steps else []
+    if steps:
+        figures.append(steps)
+        heights.append(150)
+    said = f"{result['name']}: trajectory and mesh errors"
+    return compose(result["name"], _facts(result), figures, heights, said)
+
+
+def compose(
+    heading: str, facts: str, figures: Sequence[Figure], heights: Sequence[int], said: str = ""
+) -> str:
+    """Figures under one another as one standalone SVG.
+
+    ``facts`` is the line below the heading, ``heights`` are those of the frames in px, ``said``
+    is the picture's title for those who do not see it.
+    """
     parts, top = [], _HEAD
     for figure, height in zip(figures, heights, strict=True):
         parts += [*_legend(figure, top - 18), _frame(figure, top, height)]
@@ -37,10 +48,11 @@ def render_svg(
     total = top - _GAP + 52
     return el(
         "svg",
-        el("title", f"{result['name']}: trajectory and mesh errors"),
+        el("title", said or heading),
         el("style", Markup(asset("figure.css"))),
         el("rect", class_="card", width=_WIDTH - 1, height=total - 1, x=0.5, y=0.5, rx=10),
-        *_heading(result),
+        el("text", heading, class_="heading", x=_LEFT, y=40),
+        el("text", facts, class_="tick start", x=_LEFT, y=62),
         *parts,
         xmlns="http://www.w3.org/2000/svg",
         viewBox=f"0 0 {_WIDTH} {total}",
@@ -57,17 +69,14 @@ def _frame(figure: Figure, top: int, height: int) -> Markup:
     )
 
 
-def _heading(result: Mapping[str, Any]) -> list[Markup]:
+def _facts(result: Mapping[str, Any]) -> str:
     mesh = published_mesh(result)
     parts = [words(result["status"]), f"objective {scientific(result['objective'], 8)}"]
     if mesh:
         parts.append(plural(mesh["segments"], "segment"))
         parts.append(f"largest error {scientific(mesh['max_error'], 2)}")
     parts.append(VERDICTS[result["certificate"]["verdict"]])
-    return [
-        el("text", result["name"], class_="heading", x=_LEFT, y=40),
-        el("text", " \N{MIDDLE DOT} ".join(parts), class_="tick start", x=_LEFT, y=62),
-    ]
+    return " \N{MIDDLE DOT} ".join(parts)
 
 
 def _legend(figure: Figure, y: int) -> list[Markup]:

@@ -1,11 +1,11 @@
 """The tables of the page."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from footfall.report.markup import Child, Markup, el
 from footfall.report.scales import scientific
-from footfall.summary import judgement
+from footfall.summary import VERDICTS, degree_range, judgement, words
 
 
 def checks(certificate: Mapping[str, Any]) -> Markup:
@@ -15,7 +15,8 @@ def checks(certificate: Mapping[str, Any]) -> Markup:
 
 
 def meshes(refinement: Mapping[str, Any]) -> Markup:
-    """One row for each mesh."""
+    """One row for each mesh; degrees and switches only where some mesh has them."""
+    history = refinement["iterations"]
     head = [
         "mesh",
         "segments",
@@ -23,8 +24,11 @@ def meshes(refinement: Mapping[str, Any]) -> Markup:
         "objective",
         "NLP iterations",
         "seconds",
+        *["degrees"] * any(mesh.get("degrees") for mesh in history),
+        *["switches [s]"] * any(mesh.get("switches") for mesh in history),
         "NLP status",
     ]
+    more = {"degrees": _degrees, "switches [s]": _switches}
     rows = (
         [
             index + 1,
@@ -33,11 +37,57 @@ def meshes(refinement: Mapping[str, Any]) -> Markup:
             scientific(mesh["objective"], 11),
             mesh["nlp_iterations"],
             f"{mesh['seconds']:.3f}",
+            *(more[name](mesh) for name in head[6:-1]),
             mesh["status"].replace("_", " "),
         ]
-        for index, mesh in enumerate(refinement["iterations"])
+        for index, mesh in enumerate(history)
     )
-    return grid(head, rows, numeric={0, 1, 2, 3, 4, 5})
+    return grid(head, rows, numeric=set(range(len(head) - 1)))
+
+
+def _degrees(mesh: Mapping[str, Any]) -> str:
+    return degree_range(mesh.get("degrees", []))
+
+
+def _switches(mesh: Mapping[str, Any]) -> str:
+    return ", ".join(scientific(time, 4) for time in mesh.get("switches", []))
+
+
+def stages(reports: Sequence[Mapping[str, Any]]) -> Markup:
+    """One row for each stage, in the order in which they were solved."""
+    head = ["stage", "objective", "segments", "NLP iterations", "seconds", "status"]
+    rows = (
+        [
+            index + 1,
+            scientific(stage["objective"], 11),
+            stage["segments"],
+            stage["nlp_iterations"],
+            f"{stage['seconds']:.3f}",
+            words(stage["status"]),
+        ]
+        for index, stage in enumerate(reports)
+    )
+    return grid(head, rows, numeric={0, 1, 2, 3, 4})
+
+
+def minima(found: Sequence[Mapping[str, Any]]) -> Markup:
+    """One row for each distinct minimum, with the static parameters there."""
+    chosen = list(dict.fromkeys(name for one in found for name in one.get("static", {})))
+    head = ["minimum", "objective", *chosen, "status", "certificate", "guesses", "seeds"]
+    rows: Iterable[list[Child]] = (
+        [
+            index + 1,
+            scientific(one["objective"], 11),
+            *(scientific(one.get("static", {}).get(name), 6) for name in chosen),
+            words(one["status"]),
+            VERDICTS[one["verdict"]],
+            len(one["seeds"]),
+            ", ".join(map(str, one["seeds"])),
+        ]
+        for index, one in enumerate(found)
+    )
+    width = len(chosen)
+    return grid(head, rows, numeric={*range(2 + width), 4 + width})
 
 
 def residuals(ranked: Iterable[Mapping[str, Any]]) -> Markup:

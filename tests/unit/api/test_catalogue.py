@@ -62,6 +62,15 @@ def test_the_schema_is_a_json_schema(client: AppClient) -> None:
     assert set(examples.load("cart_pole")) <= set(schema["properties"])
 
 
+def test_the_schema_has_the_names_that_the_service_replaces(client: AppClient) -> None:
+    schema = client.get("/v1/schema").json()
+    system = schema["$defs"]["Phase"]["properties"]["system"]
+    assert system["discriminator"]["mapping"]["library"] == "#/$defs/LibrarySystem"
+    for guess in (schema["properties"]["guess"], schema["$defs"]["Phase"]["properties"]["guess"]):
+        assert {"$ref": "#/$defs/JobGuess"} in guess["anyOf"]
+    assert set(schema["$defs"]["JobGuess"]["properties"]) == {"from_job"}
+
+
 def test_limits_are_the_enforced_ones(client: AppClient) -> None:
     table = client.get("/v1/limits").json()
     assert table["body_bytes"] == 5_000_000

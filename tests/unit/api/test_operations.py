@@ -33,7 +33,7 @@ class Gone:
 def gone(settings: ApiSettings) -> Iterator[AppClient]:
     """A client of a service whose store is away; building it must open no connection."""
     port: Any = Gone()
-    store = Store(port, port, port, port, port, durable=port.durable, ping=port.ping)
+    store = Store(port, port, port, port, port, port, durable=port.durable, ping=port.ping)
     with app_client(create_app(store, settings)) as client:
         yield client
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from schemas.problem import Refinement
@@ -25,6 +25,21 @@ def only(phase: Meshed, settings: Refinement = SETTINGS) -> Mesh:
     """The next mesh of a single phase, which must have one."""
     (mesh,) = next_meshes([phase], settings) or []
     return mesh
+
+
+def test_only_segments_above_the_tolerance_are_cut() -> None:
+    mesh = only(meshed([1e-7, 1e-5, 1e-6]))
+    np.testing.assert_allclose(mesh.knots, [0, *np.linspace(1 / 3, 2 / 3, 5), 1])
+
+
+@pytest.mark.parametrize(("error", "parts"), [(1.1e-6, 2), (1e-5, 4), (1.0, 5), (np.nan, 5)])
+def test_the_count_of_8_22(error: float, parts: int) -> None:
+    assert only(meshed([error])).segments == parts
+
+
+def test_little_room_goes_to_the_worst() -> None:
+    mesh = only(meshed([1, 3, 2, 1.0]), Refinement(max_segments=5))
+    np.testing.assert_allclose(mesh.knots, [0, 0.25, 0.375, 0.5, 0.75, 1])
 
 
 def test_neighbours_far_below_the_tolerance_are_joined() -> None:
@@ -144,6 +159,7 @@ def test_little_room_keeps_the_points() -> None:
     assert degrees.tolist() == [4, 4, 6]
 
 
+@settings(deadline=None)
 @given(
     st.lists(st.floats(0, 1e3) | st.just(np.nan), min_size=1, max_size=40),
     st.integers(0, 60),

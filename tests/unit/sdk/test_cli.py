@@ -86,6 +86,34 @@ def test_a_bad_problem_is_2_and_shows_the_place(
     assert "hint" in lines[3]
 
 
+def test_a_named_system_is_solved_here_and_a_job_is_not(tmp_path: Path, capsys: Captured) -> None:
+    problem = examples.load("block_min_force")
+    problem["phases"][0]["system"] = {"kind": "library", "name": "block_min_force"}
+    assert main(["solve", write(tmp_path, problem), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["objective"] == pytest.approx(12)
+    for command in ("solve", "validate"):
+        named = problem | {"guess": {"from_job": "0" * 32}}
+        assert main([command, write(tmp_path, named)]) == 2
+        said = capsys.readouterr().err
+        assert "/guess/from_job: there are no jobs in this process" in said
+        assert "--server URL" in said
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--grid", "/a"], "POINTER=VALUE"),
+        (["--grid", "a=1"], "POINTER=VALUE"),
+        (["--grid", "/a=[1"], "the list is not JSON"),
+    ],
+)
+def test_a_grid_that_cannot_be_read_is_2(
+    words: list[str], said: str, cart_pole: str, capsys: Captured
+) -> None:
+    assert main(["sweep", cart_pole, *words]) == 2
+    assert said in capsys.readouterr().err
+
+
 def test_validate_for_programs(tmp_path: Path, capsys: Captured) -> None:
     assert main(["validate", write(tmp_path, BAD), "--json"]) == 2
     document = json.loads(capsys.readouterr().out)
@@ -194,7 +222,7 @@ def test_a_taken_port_is_told_with_a_mend(tmp_path: Path, capsys: Captured) -> N
 COMMANDS = ["solve", "validate", "examples", "submit", "watch", "cancel", "result", "jobs", "serve"]
 
 
-@pytest.mark.parametrize("command", [*COMMANDS, "worker", "doctor"])
+@pytest.mark.parametrize("command", [*COMMANDS, "sweep", "worker", "doctor"])
 def test_every_command_has_help_with_an_example(command: str, capsys: Captured) -> None:
     with pytest.raises(SystemExit) as left:
         parser({}).parse_args([command, "--help"])

@@ -79,6 +79,9 @@ def test_user_text_is_escaped_everywhere(solved: dict[str, Any], problem: dict[s
         "q1"
     ]
     phase["curves"][EVIL] = phase["curves"]["controls"]
+    document["phases"].append(copy(phase))
+    document["static"] = {EVIL: 1.0}
+    document["solver"] |= {"strategy": EVIL, "attempts": [EVIL]}
     phase["integrals"] = {EVIL: 1.0}
     document["certificate"]["checks"][0] |= {"name": EVIL, "where": EVIL, "unit": EVIL}
     residual = {"name": EVIL, "phase": EVIL, "time": 0.5, "value": 1.0}
@@ -95,7 +98,8 @@ def test_what_the_pointer_reads_is_the_result(solved: dict[str, Any]) -> None:
     found = re.search(r'id="figures">(.*?)</script>', render(solved), re.DOTALL)
     assert found
     figures = json.loads(found[1])
-    assert len(figures) == 3
+    drawn = list(trajectories(solved["phases"]))
+    assert len(figures) == len(drawn) + 1
     rows = solved["phases"][0]["curves"]["states"]["coefficients"]["q1"]
     np.testing.assert_allclose(figures[0]["series"][0]["rows"], rows, rtol=1e-8, atol=1e-20)
 
@@ -132,30 +136,157 @@ def test_the_picture_is_one_standalone_svg(solved: dict[str, Any], problem: dict
     root = read_svg(picture)
     assert root.tag == "{http://www.w3.org/2000/svg}svg"
     assert "prefers-color-scheme: dark" in picture
-    assert picture.count('class="curve"') == 2 * (5 + 3)
+    meshes = len(solved["mesh_refinement"]["iterations"])
+    assert picture.count('class="curve"') == 2 * (5 + meshes)
     assert "href" not in picture
 
 
-def test_a_jump_breaks_the_line() -> None:
-    phase = {
-        "curves": {"states": {"breaks": [0, 1, 2], "coefficients": {"v": [[1.0], [-1.0]]}}},
-        "groups": {},
+def phase_of(name: str, start: float, end: float, **states: list[list[float]]) -> dict[str, Any]:
+    """A phase on segments of one length, with nodes at its knots."""
+    count = len(next(iter(states.values())))
+    knots = np.linspace(start, end, count + 1).tolist()
+    curves = {"states": {"breaks": knots, "coefficients": states}}
+    nodes = {series: [0.0] * len(knots) for series in states}
+    groups = {"states": {"time": knots, "values": nodes}}
+    return {"name": name, "knots": knots, "curves": curves, "groups": groups}
+
+
+def several(solved: dict[str, Any]) -> dict[str, Any]:
+    """A result of three phases by hand: the one in the middle has a state less, and one more."""
+    document = copy(solved)
+    stance = phase_of("stance", 0, 1, x=[[0.5, 0.5], [1.5, 0.5]], y=[[1.0], [1.0]])
+    flight = phase_of("flight", 1, 1.5, x=[[3.0, 0.5, 0.0]], z=[[2.0]])
+    landing = phase_of("landing", 1.5, 1.5 + 1e-3, x=[[4.0]], y=[[-1.0]])
+    stance["groups"]["rates"] = {"time": [0.0, 0.5, 1.0], "values": {"d(u)": [0.0, 1.0, None]}}
+    stance["groups"]["costates"] = {"time": [0.1, 0.9], "values": {"x": [2.0, 4.0]}}
+    stance["integrals"] = {"work": 0.25}
+    document |= {
+        "phases": [stance, flight, landing],
+        "static": {"stiffness": 12.5, "unknown": None},
+        "stages": [
+            {
+                "status": status,
+                "objective": objective,
+                "nlp_iterations": 7,
+                "segments": 11,
+                "seconds": 0.125,
+            }
+            for status, objective in (("iteration_limit", None), ("converged", 2.5))
+        ],
+        "minima": [
+            {
+                "objective": objective,
+                "status": "converged",
+                "verdict": verdict,
+                "seeds": seeds,
+                "static": {"stiffness": 12.5},
+                "phases": [],
+            }
+            for objective, verdict, seeds in (
+                (57.94478, "certified", [1, 4, 9]),
+                (303.25, "not_certified", [2]),
+            )
+        ],
     }
-    (figure,) = trajectories(phase, {})
+    for mesh in document["mesh_refinement"]["iterations"]:
+        mesh |= {"degrees": [3, 4, 8], "switches": [0.75]}
+    document["solver"] |= {"strategy": "adaptive_mu", "attempts": ["default: locally infeasible"]}
+    return document
+
+
+def test_a_jump_breaks_the_line() -> None:
+    (figure,) = trajectories([phase_of("swing", 0, 2, v=[[1.0], [-1.0]])])
     (series,) = figure.series
     assert np.isnan(series.value).sum() == 1
     assert series.value[np.flatnonzero(np.isnan(series.value))[0] - 1] == 1.0
+    assert figure.bands == []
+
+
+def test_time_goes_on_from_phase_to_phase(solved: dict[str, Any]) -> None:
+    figures = {figure.group: figure for figure in trajectories(several(solved)["phases"])}
+    states = figures["states"]
+    x, y, z = (item.curve for item in states.series)
+    np.testing.assert_allclose(x([0.25, 0.75, 1.25, 1.5]), [0.5, 1.5, 3.0, 4.0])
+    np.testing.assert_array_equal(y([0.5, 1.25, 1.5]), [1.0, np.nan, -1.0])
+    np.testing.assert_array_equal(z([0.5, 1.25, 1.5005]), [np.nan, 2.0, np.nan])
+    assert (states.x.low, states.x.high) == (0.0, 1.501)
+    assert [(band.name, band.start) for band in states.bands] == [
+        ("stance", 0.0),
+        ("flight", 1.0),
+        ("landing", 1.5),
+    ]
+    assert all(figure.x == states.x for figure in figures.values())
+
+
+def test_a_line_ends_where_its_phase_ends(solved: dict[str, Any]) -> None:
+    figure = next(trajectories(several(solved)["phases"]))
+    y = figure.series[1]
+    drawn = y.time[np.isfinite(y.value)]
+    assert drawn.min() == 0.0
+    assert drawn[drawn < 1.5].max() == 1.0
+    assert not np.any((drawn > 1.0) & (drawn < 1.5))
+
+
+def test_series_without_curves_are_drawn_through_their_nodes(solved: dict[str, Any]) -> None:
+    figures = {figure.group: figure for figure in trajectories(several(solved)["phases"])}
+    (costate,) = figures["costates"].series
+    assert costate.label == "costate of x"
+    np.testing.assert_allclose(costate.curve([0.1, 0.5, 0.7]), [2.0, 3.0, 3.5])
+    (rate,) = figures["rates"].series
+    assert rate.curve(0.25) == 0.5
+    assert np.isnan(rate.curve(0.75))
+
+
+def test_bounds_hold_in_their_own_phase_and_not_for_costates(solved: dict[str, Any]) -> None:
+    problem = {"phases": [{"name": "stance", "bounds": {"x": [0, 3]}}, {"name": "flight"}]}
+    figures = {f.group: f for f in trajectories(several(solved)["phases"], problem)}
+    levels = figures["states"].series[0].limits
+    assert [(level.value, level.start, level.end) for level in levels] == [(0, 0, 1), (3, 0, 1)]
+    assert figures["costates"].series[0].limits == ()
+
+
+def test_the_page_of_several_phases(solved: dict[str, Any]) -> None:
+    page = render(several(solved))
+    assert page.count('class="band s1"') == 3  # states, rates, costates
+    for name in ("stance", "flight"):
+        assert page.count(f'class="phase" x="{33.311 if name == "stance" else 83.278}%"') == 3
+    assert "landing</text>" not in page  # too narrow for its name, but its tint tells it
+    assert "<title>landing</title>" in page
+    assert "flight: 1 to 1.5 s, 1 segment" in page
+    assert "Integrals of stance" in page
+    folded = re.search(r"<details><summary>Costates</summary>(.*?)</details>", page, re.DOTALL)
+    assert folded
+    assert folded[1].count("<figure>") == 1
+    read_svg(render_svg(several(solved)))
+
+
+def test_the_tables_of_a_result_that_went_through_more(solved: dict[str, Any]) -> None:
+    text = re.sub(r"<[^>]+>", "|", re.sub(r"<(style|script).*?</\1>", "", render(several(solved))))
+    text = re.sub(r"\|+", "|", text)
+    for row in (
+        "|stiffness|12.5|unknown|\N{EN DASH}|",
+        "|1|\N{EN DASH}|11|7|0.125|iteration limit|2|2.5|11|7|0.125|converged|",
+        "|1|57.94478|12.5|converged|certified|3|1, 4, 9|",
+        "|2|303.25|12.5|converged|NOT certified|1|2|",
+        "|degrees|switches [s]|NLP status|",
+        "|3 to 8|0.75|",
+        "|strategy|adaptive mu|",
+        "|default: locally infeasible|",
+    ):
+        assert row in text, row
+
+
+def test_a_result_of_one_stage_has_no_table_of_stages(solved: dict[str, Any]) -> None:
+    page = render(copy(solved) | {"stages": [], "minima": [], "static": {}})
+    for head in ("Stages", "Distinct minima", "Static parameters", 'class="band'):
+        assert head not in page
 
 
 def test_many_series_are_spread_over_plots_and_many_nodes_thinned() -> None:
     names = [f"x{i}" for i in range(14)]
-    time = np.linspace(0, 1, 5001)
-    flat = dict.fromkeys(names, [[0.0]] * 5000)
-    phase = {
-        "curves": {"states": {"breaks": time.tolist(), "coefficients": flat}},
-        "groups": {"states": {"time": time.tolist(), "values": dict.fromkeys(names, [0.0] * 5001)}},
-    }
-    figures = list(trajectories(phase, {"x0": (1e6,)}))
+    phase = phase_of("swing", 0, 1, **dict.fromkeys(names, [[0.0]] * 5000))
+    problem = {"phases": [{"name": "swing", "bounds": {"x0": 1e6}}]}
+    figures = list(trajectories([phase], problem))
     assert [len(figure.series) for figure in figures] == [6, 6, 2]
     nodes = figures[0].series[0].nodes
     assert nodes is not None

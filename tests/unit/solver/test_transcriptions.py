@@ -63,7 +63,7 @@ def test_constraints_over_the_ends_hold_on_the_curves_through_the_nodes(
     (phase,) = solution.phases
     ends = [phase.groups["controls"].values["u"][at] for at in (0, -1)]
     assert ends == pytest.approx([5, -4], abs=1e-6)
-    for name, group in phase.groups.items():
-        curves = Curves.from_dict(phase.curves[name].model_dump())
+    for name, published in phase.curves.items():
+        curves, group = Curves.from_dict(published.model_dump()), phase.groups[name]
         for series, values in group.values.items():
             assert curves[series](group.time) == pytest.approx(values, abs=1e-7)

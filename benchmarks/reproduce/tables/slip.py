@@ -1,0 +1,54 @@
+"""004: a hopper at an ice patch, in three steps."""
+
+from typing import Any
+
+import examples
+from benchmarks.reproduce.rows import Row, Table
+
+SEQUENCES = ("str", "stl_str", "sli_str", "sli_stl_str")
+
+_SUMS = (
+    ("actuation", 0.2050505, "sums of (u dt)^2 vanish with the step; the integral is 0.8946793"),
+    ("work", 0.280342, "summed over ten nodes, without the toe's speed"),
+)
+
+
+def _two_steps(name: str) -> dict[str, Any]:
+    """The changes that end after the second step, the least actuation squared."""
+    stages = examples.load(name)["stages"][:2]
+    return {"stages": stages, "objective": stages[-1]["objective"]}
+
+
+def _rows(sequence: str) -> tuple[Row, ...]:
+    name = f"slip_{sequence}"
+    return (
+        Row(
+            f"{sequence}, actuation squared", name, _two_steps(name), refinement={"tolerance": 1e-6}
+        ),
+        Row(f"{sequence}, work", name, refinement={"tolerance": 1e-5}),
+        Row(f"{sequence}, random guesses", name, _two_steps(name), refinement=None, kind="random"),
+    )
+
+
+SLIP = Table(
+    "004",
+    "hopper at an ice patch",
+    "Any motion, then the least actuation squared, then the least work: each step starts from "
+    "the one before. The seed's sums over ten nodes are reproduced beside the integrals, which "
+    "do not change with the mesh. `str` is the case that its code ships.",
+    (
+        *(
+            Row(
+                f"str, the seed's sum: {name}",
+                "slip_str",
+                {"sum": name},
+                optimum=least,
+                kind="sums",
+                refinement=None,
+                why=why,
+            )
+            for name, least, why in _SUMS
+        ),
+        *(row for sequence in SEQUENCES for row in _rows(sequence)),
+    ),
+)
