@@ -2,12 +2,11 @@
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.errors import InvalidModel, Issue
 from schemas.events import StageStarted
 from schemas.problem import Problem
 from schemas.results import PhaseResult
@@ -15,14 +14,16 @@ from solver.backends import NlpStatus, Outcome, Watch, make_backend
 from solver.diagnosis import check_start
 from solver.lowering.used import used_integrals
 from solver.model import Model
+from solver.nlp.health import scale_warnings, unused_warnings
 from solver.nlp.redundancy import Redundancy, find_redundancy
 from solver.nlp.residuals import RowResidual, ranked_residuals
 from solver.nlp.scaling import Scaling, typical_scaling
-from solver.nlp.stationarity import stationary
 from solver.nlp.task import NlpTask
+from solver.portfolio import Won
 from solver.refinement.error import segment_errors
 from solver.refinement.integrals import integral_errors
 from solver.run import Run
+from solver.solving import solve_task
 from solver.trajectory import Trajectory
 from solver.transcribe import (
     Extracted,
@@ -32,6 +33,7 @@ from solver.transcribe import (
     transcribe,
     with_costates,
 )
+from solver.unmet import unmet
 
 Array = NDArray[np.float64]
 
@@ -54,6 +56,8 @@ class SolvedMesh:
 
     setting: Setting
     outcome: Outcome
+    strategy: str
+    attempts: Sequence[str]
     trajectories: list[Trajectory]
     phases: list[PhaseResult]
     statics: dict[str, float]
@@ -61,6 +65,7 @@ class SolvedMesh:
     integral_errors: list[Array]
     residuals: list[RowResidual]
     redundancy: Redundancy
+    warnings: Sequence[str]
     variables: int
     rows: int
     seconds: float
@@ -98,11 +103,25 @@ class _Built:
     scaling: Scaling
     task: NlpTask
     redundancy: Redundancy
+    warnings: Sequence[str]
     began: float
 
-    def read(self, outcome: Outcome) -> SolvedMesh:
-        """The trajectories at a point of the NLP, their errors, and what is violated there."""
-        program, scaling = self.transcribed.program, self.scaling
+    def unmet(self, outcome: Outcome, run: Run, number: int) -> list[RowResidual]:
+        """Where the program is infeasible: the constraints that give way if all of them may."""
+        if outcome.status is not NlpStatus.INFEASIBLE or run.stopped():
+            return []
+        run.on_event(StageStarted(stage="solve", note="which constraints cannot be met"))
+        backend = make_backend(self.problem.solver.backend)
+        watch = run.watch(number, lambda _: None)
+        program = self.transcribed.program
+        return unmet(backend, self.problem.solver, watch, program, self.scaling, self.task) or []
+
+    def read(self, won: Won, unmet: Sequence[RowResidual] = ()) -> SolvedMesh:
+        """The trajectories at a point of the NLP, their errors, and what is violated there.
+
+        ``unmet`` are the constraints that cannot be met; else those violated at the point count.
+        """
+        outcome, program, scaling = won.outcome, self.transcribed.program, self.scaling
         w, rows = outcome.point.z * scaling.columns, outcome.point.rows * scaling.rows
         extracted = extract(self.transcribed, w)
         phases = [phase.result for phase in extracted]
@@ -115,13 +134,16 @@ class _Built:
         return SolvedMesh(
             setting=self.setting,
             outcome=outcome,
+            strategy=won.strategy,
+            attempts=won.attempts,
             trajectories=[phase.trajectory for phase in extracted],
             phases=phases,
             statics=statics,
             errors=self._errors(phases, statics),
             integral_errors=self._integral_errors(extracted, statics),
-            residuals=ranked_residuals(program, scaling, w, rows),
+            residuals=[*unmet] or ranked_residuals(program, scaling, w, rows),
             redundancy=self.redundancy,
+            warnings=self.warnings,
             variables=program.variables.size,
             rows=program.rows,
             seconds=time.monotonic() - self.began,
@@ -170,18 +192,19 @@ def solve_mesh(
         if pace.due() and watch.best is not None:
             with pace.measured():
                 unfinished = Outcome(NlpStatus.STOPPED, "", watch.best, watch.iterations, 0.0)
-                publish(built.read(unfinished))
+                publish(built.read(Won(unfinished)))
 
     with run.stage("solve"):
-        outcome = _solve(
-            problem,
+        won = solve_task(
             built.task,
-            start.warm,
+            problem.solver,
             lambda: run.watch(start.number, keep),
             lambda note: run.on_event(StageStarted(stage="solve", note=note)),
+            warm=start.warm,
         )
+        unmet = built.unmet(won.outcome, run, start.number)
     with run.stage("refine"):
-        return built.read(outcome)
+        return built.read(won, unmet)
 
 
 def _build(problem: Problem, model: Model, start: Start) -> _Built:
@@ -190,49 +213,14 @@ def _build(problem: Problem, model: Model, start: Start) -> _Built:
     transcribed = transcribe(model, setting)
     scaling = typical_scaling(transcribed.program)
     task = NlpTask.of(transcribed.program, scaling)
+    warnings: list[str] = []
     if start.number == 0:
         check_start(problem, model, transcribed.program, task, setting.guesses)
+        names = [phase.name for phase in model.phases]
+        warnings += unused_warnings(transcribed.program, task, names)
+        warnings += scale_warnings(transcribed.program, task, names)
     redundancy = find_redundancy(transcribed.program, scaling, task.nlp)
     reduced = task.without(redundancy)
-    return _Built(problem, model, setting, transcribed, scaling, reduced, redundancy, began)
-
-
-def _solve(
-    problem: Problem,
-    task: NlpTask,
-    warm: bool,
-    watch: Callable[[], Watch],
-    announce: Callable[[str], None],
-) -> Outcome:
-    """Solve, on later meshes first from a warm start; cold again where that fails."""
-    backend, settings = make_backend(problem.solver.backend), problem.solver
-    if refusal := backend.refusal(task):
-        raise InvalidModel([Issue("/solver/backend", refusal)])
-
-    def attempt(*, warm: bool) -> Outcome:
-        outcome = backend.solve(task, settings, watch(), warm=warm)
-        return _judged(task, outcome, settings.tolerance)
-
-    if not warm:
-        return attempt(warm=False)
-    outcome = attempt(warm=True)
-    if outcome.status in (NlpStatus.OPTIMAL, NlpStatus.STOPPED, NlpStatus.TIME_LIMIT):
-        return outcome
-    announce("again, from a cold start")
-    again = attempt(warm=False)
-    settled = again.status is NlpStatus.OPTIMAL or outcome.status is not NlpStatus.ACCEPTABLE
-    return again if settled else outcome
-
-
-_NEARLY = (NlpStatus.ACCEPTABLE, NlpStatus.DIVERGED)
-
-
-def _judged(task: NlpTask, outcome: Outcome, tolerance: float) -> Outcome:
-    """The outcome, optimal where only round-off kept the solver from saying so."""
-    rows, bounds = outcome.row_multipliers, outcome.bound_multipliers
-    if outcome.status not in _NEARLY or rows is None or bounds is None:
-        return outcome
-    if outcome.point.violation > tolerance:
-        return outcome
-    arrived = stationary(task, outcome.point.z, rows, bounds, tolerance)
-    return replace(outcome, status=NlpStatus.OPTIMAL) if arrived else outcome
+    return _Built(
+        problem, model, setting, transcribed, scaling, reduced, redundancy, warnings, began
+    )

@@ -84,7 +84,7 @@ def advice(
     """What to try next."""
     lines = list(_ADVICE.get(status, []))
     if status is SolutionStatus.LOCALLY_INFEASIBLE:
-        worst = [f"The constraint violated most is {_place(row)}." for row in residuals[:1]]
+        worst = [f"Hardest to meet is {_place(row)}." for row in residuals[:1]]
         lines = [*worst, *_saturated(problem, phases), *lines]
     lines += _runaway(problem, phases)
     failed = {row.name for row in certificate.checks if row.judged and not row.passed}

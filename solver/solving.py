@@ -1,0 +1,62 @@
+"""One program: warm or cold, the default strategy or a portfolio, and what the outcome is worth."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from schemas.errors import InvalidModel, Issue
+from schemas.problem import SolverSettings
+from solver.backends import DEFAULT, NlpStatus, Outcome, Strategy, Watch, make_backend
+from solver.nlp.stationarity import stationary
+from solver.nlp.task import NlpTask
+from solver.portfolio import Portfolio, Won
+
+_OVER = (NlpStatus.OPTIMAL, NlpStatus.STOPPED, NlpStatus.TIME_LIMIT)
+_NEARLY = (NlpStatus.ACCEPTABLE, NlpStatus.DIVERGED)
+
+
+def solve_task(
+    task: NlpTask,
+    settings: SolverSettings,
+    watch: Callable[[], Watch],
+    announce: Callable[[str], None],
+    *,
+    warm: bool,
+) -> Won:
+    """Solve; from a warm start first where there is one, and cold again where that fails.
+
+    With ``settings.portfolio`` other strategies are tried after a failure. ``announce`` hears of
+    every attempt but the first.
+
+    Raises
+    ------
+    InvalidModel
+        If the backend does not take the program.
+    """
+    backend = make_backend(settings.backend)
+    if refusal := backend.refusal(task):
+        raise InvalidModel([Issue("/solver/backend", refusal)])
+
+    def attempt(task: NlpTask, strategy: Strategy = DEFAULT, *, warm: bool = False) -> Outcome:
+        outcome = backend.solve(task, settings, watch(), warm=warm, strategy=strategy)
+        return _judged(task, outcome, settings.tolerance)
+
+    outcome = attempt(task, warm=warm)
+    if warm and outcome.status not in _OVER:
+        announce("again, from a cold start")
+        again = attempt(task)
+        if again.status is NlpStatus.OPTIMAL or outcome.status is not NlpStatus.ACCEPTABLE:
+            outcome = again
+    if not settings.portfolio:
+        return Won(outcome)
+    return Portfolio(backend, settings, attempt, watch, announce).solve(task, outcome)
+
+
+def _judged(task: NlpTask, outcome: Outcome, tolerance: float) -> Outcome:
+    """The outcome, optimal where only round-off kept the solver from saying so."""
+    rows, bounds = outcome.row_multipliers, outcome.bound_multipliers
+    if outcome.status not in _NEARLY or rows is None or bounds is None:
+        return outcome
+    if outcome.point.violation > tolerance:
+        return outcome
+    arrived = stationary(task, outcome.point.z, rows, bounds, tolerance)
+    return replace(outcome, status=NlpStatus.OPTIMAL) if arrived else outcome
