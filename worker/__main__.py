@@ -29,9 +29,10 @@ def main(arguments: list[str] | None = None) -> int:
         from solver import solve  # noqa: PLC0415
         from solver.backends import BACKENDS  # noqa: PLC0415
 
+        available = [name for name, backend in BACKENDS.items() if backend().available()]
         settings = WorkerSettings(url=url, name=options.name)
         warm_up(solve, render)
-        run_worker(settings, solve, render, backends=[*BACKENDS])
+        run_worker(settings, solve, render, backends=available)
     except FootfallError as error:
         sys.stderr.write(f"{error.message} {error.hint}\n")
         return 1

@@ -122,6 +122,8 @@ class _Uses(NamedTuple):
         last_before[lines[:-1][leaps]] = np.flatnonzero(leaps)
         before = np.arange(len(lines)) <= last_before[lines]
         nodes[variables[before]] = -1
+        timed = nodes >= 0
+        nodes[timed] = np.unique(nodes[timed], return_inverse=True)[1]
         return nodes
 
     def spans(self, nodes: Indices) -> tuple[Indices, Indices]:

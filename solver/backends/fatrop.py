@@ -23,6 +23,7 @@ from solver.nlp.task import NlpTask
 Array = NDArray[np.float64]
 Indices = NDArray[np.int_]
 
+_HUGE = 1e20
 _SHUT = "Shut"  # by the watch: whatever the plugin then makes of it
 
 STATUSES: Mapping[str, NlpStatus] = MappingProxyType(
@@ -137,7 +138,8 @@ class _Staged:
         stats = solver.stats()["fatrop"]
         flag, count = int(stats["return_flag"]), int(stats["iterations_count"])
         raw = _FLAGS[flag] if 0 <= flag < len(_FLAGS) else f"flag {flag}"
-        raw = _SHUT if self.eye.shut else raw
+        if self.eye.shut:
+            raw = RAISED if self.eye.invalid else _SHUT
         row_multipliers = np.zeros(len(self.task.row_lower))
         row_multipliers[chain.order[self.own]] = result["lam_g"].full().ravel()[self.own]
         bound_multipliers = result["lam_x"].full().ravel()[chain.primary]
@@ -163,7 +165,8 @@ class _Staged:
         objective, rows = nlp.evaluate(z)
         slopes = _placed(nlp.gradient(z, none)[1], chain.primary, self.size)
         values, entries = nlp.jacobian(z, none)
-        jacobian = self._jacobian(entries * (1 + self.eye(z)))
+        flat = ca.vertcat(entries.nz[:])
+        jacobian = self._jacobian(_finite(flat) + self.eye(z, ca.sum1(flat)))
         own = _placed(lam[self.own.tolist()], chain.order[self.own], len(self.task.row_lower))
         hessian = _symmetric(nlp.hessian(z, none, sigma, own), chain.hessian, self.size)
         # The plugin asks for the Lagrangian's gradient beside the Hessian, and never reads it.
@@ -190,7 +193,7 @@ class _Staged:
         rows = np.concatenate([self.chain.jacobian[0][live], gap, gap])
         columns = np.concatenate([self.chain.jacobian[1][live], following, copy])
         units = np.repeat([1.0, -1.0], len(gap))
-        values = ca.vertcat(entries.nz[live.tolist()], ca.DM(units))
+        values = ca.vertcat(entries[live.tolist()], ca.DM(units))
         return _sparse(values, rows, columns, (self.rows, self.size))
 
 
@@ -207,7 +210,12 @@ def _symmetric(upper: ca.MX, places: Indices, size: int) -> ca.MX:
     twice = np.flatnonzero(one != other)
     source = np.concatenate([np.arange(len(one)), twice])
     rows, columns = np.concatenate([one, other[twice]]), np.concatenate([other, one[twice]])
-    return _sparse(upper.nz[source.tolist()], rows, columns, (size, size))
+    return _sparse(_finite(upper.nz[source.tolist()]), rows, columns, (size, size))
+
+
+def _finite(values: ca.MX) -> ca.MX:
+    """Values without infinities or NaN, which the plugin would try to factorise for ever."""
+    return ca.fmin(ca.fmax(values, -_HUGE), _HUGE)
 
 
 def _sparse(values: ca.MX, rows: Indices, columns: Indices, shape: tuple[int, int]) -> ca.MX:
@@ -221,31 +229,32 @@ class _Eye(ca.Callback):
     """Shows the watch each iterate; the plugin has no callback of its own.
 
     It stands in the Jacobian, which the plugin evaluates once an iteration, in its restoration
-    phase too: z -> 0.
+    phase too: z and the sum of the entries -> 0. An infinite sum ends the solve, too.
     """
 
     def __init__(self, task: NlpTask, watch: Watch) -> None:
         super().__init__()
         self.task, self.watch = task, watch
         self.last: Array | None = None
-        self.shut = False
+        self.shut = self.invalid = False
         self.construct("eye", {})
 
     def get_n_in(self) -> int:
-        return 1
+        return 2
 
     def get_n_out(self) -> int:
         return 1
 
     def get_sparsity_in(self, index: int) -> ca.Sparsity:
-        del index
-        return ca.Sparsity.dense(len(self.task.start), 1)
+        return ca.Sparsity.dense(1 if index else len(self.task.start), 1)
 
     def has_eval_buffer(self) -> bool:
         return True
 
     def eval_buffer(self, arguments: Sequence[memoryview], results: Sequence[memoryview]) -> int:
-        z = np.frombuffer(arguments[0])
+        z, total = (np.frombuffer(memory) for memory in arguments)
+        if not np.isfinite(total[0]):
+            self.invalid = self.shut = True
         if self.last is None or not np.array_equal(z, self.last):  # the start is asked for twice
             self.last = z.copy()
             self.shut = self.watch.see(iterate_at(self.task, self.last)) or self.shut

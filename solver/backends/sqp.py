@@ -28,10 +28,14 @@ STATUSES: Mapping[str, NlpStatus] = MappingProxyType(
         "Maximum_Iterations_Exceeded": NlpStatus.ITERATION_LIMIT,
         "User_Requested_Stop": NlpStatus.STOPPED,
         RAISED: NlpStatus.DIVERGED,
-        _STUCK: NlpStatus.INFEASIBLE,
+        "Non_Regular_Sensitivities": NlpStatus.INVALID_NUMBER,
+        _STUCK: NlpStatus.DIVERGED,
     }
 )
-"""What the method returns -> the neutral status. It cannot tell an infeasible problem itself."""
+"""What the method returns -> the neutral status.
+
+It cannot tell an infeasible problem from a cycle: for both, the violation falls no more.
+"""
 
 _SUBPROBLEM = 200  # iterations of one QP: an unbounded one never ends
 _CONSTANT = ("ipopt.jac_c_constant", "ipopt.jac_d_constant", "ipopt.hessian_constant")
