@@ -24,7 +24,7 @@ def scale_warnings(program: Program, task: NlpTask, phases: Sequence[str]) -> li
     ``phases`` has the phases' names. One line for each name and phase.
     """
     jacobian = task.nlp.jacobian(task.start, [])[1]
-    slopes = np.abs(jacobian.nonzeros())
+    slopes = np.nan_to_num(np.abs(jacobian.nonzeros()), posinf=0.0)  # those are told elsewhere
     rows, columns = np.zeros(program.rows), np.zeros(program.variables.size)
     np.maximum.at(rows, jacobian.row(), slopes)
     np.maximum.at(columns, np.repeat(np.arange(len(columns)), np.diff(jacobian.colind())), slopes)

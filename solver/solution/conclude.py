@@ -94,7 +94,10 @@ def _solution(
         status=status,
         objective=finite(chosen.objective),
         message=message(problem, status, solved, certificate),
-        advice=advice(problem, status, chosen.phases, residuals, certificate),
+        advice=[
+            *chosen.advice,
+            *advice(problem, status, chosen.phases, residuals, certificate),
+        ],
         warnings=[*warnings(problem, chosen.redundancy), *solved[0].warnings],
         static={name: finite(value) for name, value in chosen.statics.items()},
         phases=chosen.phases,
