@@ -1,9 +1,9 @@
 # What a person types. Every target sets up what it needs by itself.
 .DEFAULT_GOAL := help
-.PHONY: help setup demo serve test check format bench clean
+.PHONY: help setup demo serve test check format bench reproduce clean
 
 help: ## this list
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-8s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-10s %s\n", $$1, $$2 }' Makefile
 
 setup: ## make .venv with everything, also the tools of developers
 	@scripts/setup dev
@@ -31,6 +31,10 @@ format: ## format the code
 bench: ## measure speed, as ratios, in one run
 	@scripts/setup dev
 	@.venv/bin/python -m benchmarks
+
+reproduce: ## solve the seeds' tables from nothing, write docs/reproduction.md
+	@scripts/setup dev
+	@.venv/bin/python -m benchmarks.reproduce
 
 clean: ## remove .venv, caches and what was made
 	@rm -rf .venv .mypy_cache .pytest_cache .ruff_cache .import_linter_cache .hypothesis demo

@@ -4,6 +4,8 @@ A pydantic location holds union tags and markers beside keys and indices. Walkin
 JSON Schema along it tells them apart, and ends at the fields that were allowed there.
 """
 
+import json
+import re
 from collections.abc import Callable
 from functools import cache
 from typing import Any
@@ -15,7 +17,7 @@ from schemas.errors import Issue
 from schemas.expressions.errors import quoted
 from schemas.phases import Phase
 from schemas.pointers import Part, pointer
-from schemas.problem import Problem
+from schemas.problem import Limits, Problem, Refinement, SolverSettings
 from schemas.suggest import did_you_mean
 from schemas.systems import SYSTEMS
 
@@ -29,6 +31,8 @@ _PLAIN = {
     "int_parsing": "expected a whole number",
     "float_type": "expected a number",
     "float_parsing": "expected a number",
+    "bool_type": "expected true or false",
+    "bool_parsing": "expected true or false",
 }
 _GIVEN: dict[type, str] = {
     dict: "an object",
@@ -39,16 +43,26 @@ _GIVEN: dict[type, str] = {
     float: "a number",
     type(None): "null",
 }
+_ABS = 'write "abs": "slack", "abs": {"tanh": 0.01} or "abs": {"sqrt": 0.001}'
+_FEW = 4  # fields that are named beside another hint
+_SHOWN = 60  # characters of a value that a hint repeats
 _MAXIMIZE = 'to maximize, minimize the negative: {"minimize": "-(...)"}'
 _INLINED = ("from_job", "library")
 _EDGE = (
     "a service and the footfall command put in what it names before the problem is read; "
     "here, write it out"
 )
+_FIELDS = {
+    system.model_fields["kind"].annotation.__args__[0]: system.model_fields  # type: ignore[union-attr]
+    for system in SYSTEMS
+}
 _HOMES: tuple[tuple[type[Posted], str], ...] = (
     *((system, "a phase's 'system'") for system in SYSTEMS),
     (Phase, "a phase, an entry of 'phases'"),
     (Problem, "the problem itself"),
+    (Refinement, "'refinement'"),
+    (SolverSettings, "'solver'"),
+    (Limits, "'limits'"),
 )
 
 
@@ -74,13 +88,22 @@ def _plain(message: str) -> str:
 
 def _missing(_: ErrorDetails, parts: list[Part], schema: Schema) -> Issue:
     hint = f'write "{parts[-1]}": "{schema["const"]}"' if "const" in schema else ""
+    hint = _ABS if parts[-2:] == ["nonsmooth", "abs"] else hint
     return Issue(pointer(*parts), f"the field '{parts[-1]}' is missing", hint)
 
 
 def _unknown(_: ErrorDetails, parts: list[Part], schema: Schema) -> Issue:
     word, fields = str(parts[-1]), list(schema.get("properties", ()))
-    hint = _MAXIMIZE if word == "maximize" and "minimize" in fields else _home(word)
-    hint = hint or did_you_mean(word, fields) or "the fields here are " + ", ".join(fields)
+    known = "the fields here are " + ", ".join(fields)
+    kind = schema.get("properties", {}).get("kind", {}).get("const")
+    if word == "maximize" and "minimize" in fields:
+        hint = _MAXIMIZE
+    elif kind in _FIELDS and any(word in others for others in _FIELDS.values()):
+        owners = " or ".join(name for name, others in _FIELDS.items() if word in others)
+        hint = f"that is of the kind {owners}; the fields of {kind} are " + ", ".join(fields)
+    else:
+        hint = _home(word) or did_you_mean(word, fields)
+        hint = f"{known}; {hint}" if hint and 1 < len(fields) <= _FEW else hint or known
     return Issue(pointer(*parts), f"unknown field {quoted(word)}", hint)
 
 
@@ -102,14 +125,24 @@ def _as_object(given: Any, schema: Schema) -> str:
         kind = given if isinstance(given, str) and given in kinds else next(iter(kinds))
         return f'write {{"kind": "{kind}"}}; the kinds are {", ".join(kinds)}'
     fields = list(schema.get("properties", ()))
-    if len(fields) == 1:
-        return f'write {{"{fields[0]}": ...}}'
+    needed = schema.get("required", ()) if isinstance(given, list) else fields
+    if len(needed) == 1:
+        return f'write {{"{needed[0]}": {_again(given)}}}'
     return "the fields are " + ", ".join(fields) if fields else 'each under its name: {"x": ...}'
+
+
+def _again(given: Any) -> str:
+    """What was given, as JSON; dots where that is long."""
+    text = json.dumps(given, default=str)
+    return text if len(text) <= _SHOWN else "..."
 
 
 def _list(error: ErrorDetails, parts: list[Part], _: Schema) -> Issue:
     message = f"expected a list, [...], got {_given(error)}"
-    return Issue(pointer(*parts), message, "put it in brackets; commas stand between the items")
+    hint = "put it in brackets; commas stand between the items"
+    if isinstance(error["input"], str | int | float):
+        hint = f"write [{_again(error['input'])}]"
+    return Issue(pointer(*parts), message, hint)
 
 
 def _given(error: ErrorDetails) -> str:
@@ -137,6 +170,8 @@ def _choice(given: Any, parts: list[Part], options: list[str]) -> Issue:
         )
     if not isinstance(given, str):
         return Issue(pointer(*parts), f"expected one of {known}")
+    if parts[-2:] == ["nonsmooth", "abs"]:
+        return Issue(pointer(*parts), f"{quoted(given)} is no treatment of abs", _ABS)
     message = f"{quoted(given)} is none of {known}" if len(options) > 1 else f"expected {known}"
     return Issue(pointer(*parts), message, did_you_mean(given, options))
 
@@ -148,6 +183,8 @@ def _pattern(error: ErrorDetails, parts: list[Part], _: Schema) -> Issue:
     hint = "a letter or _, then letters, digits and _, 64 at the most"
     if "(" in str(error["input"]) and "d{1,4}" in pattern:
         hint = "derivatives are those of one name, d(x), dd(x), ddd(x) and dddd(x)"
+    elif rate := re.fullmatch(r"d+\((\w+)\)", str(error["input"])):
+        hint = f"write the name alone, {rate[1]}"
     return Issue(pointer(*parts), f"{quoted(error['input'])} is not a name", hint)
 
 

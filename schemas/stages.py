@@ -9,8 +9,10 @@ from collections.abc import Iterator
 from typing import Any
 
 from schemas.errors import Issue
+from schemas.expressions.errors import quoted
 from schemas.pointers import Part, parts_of, pointer
 from schemas.problem import Problem
+from schemas.suggest import did_you_mean
 
 _OF_THE_WHOLE = ("stages", "multistart", "limits", "known")
 """Fields that say something about all stages together."""
@@ -62,8 +64,10 @@ def _same_kind(target: dict[str, Any], patch: dict[str, Any]) -> bool:
 
 
 def out_of_place(problem: Problem) -> Iterator[Issue]:
-    """Fields of patches that no stage has of its own."""
+    """Fields of patches that no stage has of its own, and phases that there are not."""
+    known = [phase.name for phase in problem.phases]
     for index, patch in enumerate(problem.stages):
+        yield from _phases(patch.get("phases"), known, ("stages", index, "phases"))
         for field in _OF_THE_WHOLE:
             if field in patch:
                 yield Issue(
@@ -77,6 +81,23 @@ def out_of_place(problem: Problem) -> Iterator[Issue]:
                 "a stage starts from the solution of the one before",
                 "give a guess to the first stage only, or to the problem",
             )
+
+
+def _phases(patch: Any, known: list[str], place: tuple[Part, ...]) -> Iterator[Issue]:
+    """Patches of phases that are neither there nor whole; ``known`` grows by those that are."""
+    if isinstance(patch, list) and any(
+        isinstance(phase, dict) and "system" not in phase for phase in patch
+    ):
+        yield Issue(
+            pointer(*place),
+            "a list takes the place of all phases",
+            'to change one, patch it by its name: {"' + known[0] + '": {...}}',
+        )
+    for name, phase in patch.items() if isinstance(patch, dict) else ():
+        if name not in known and isinstance(phase, dict) and "system" not in phase:
+            near = did_you_mean(name, known) or "the phases are " + ", ".join(known[:12])
+            yield Issue(pointer(*place, name), f"there is no phase {quoted(name)}", near)
+        known.append(name)
 
 
 def blamed(issue: Issue, index: int, patch: dict[str, Any]) -> Issue:

@@ -10,7 +10,7 @@ from schemas.expressions import Expression
 from schemas.phases import Phase as PhaseSpec
 from schemas.pointers import pointer
 from schemas.problem import Problem
-from solver.model import Model, Phase
+from solver.model import OPEN, Model, Phase
 from solver.nlp.program import Program, RowLabel
 from solver.nlp.task import NlpTask
 from solver.numeric import along
@@ -72,15 +72,18 @@ def _inside(task: NlpTask) -> Array:
 def _broken(problem: Problem, model: Model, index: int, guess: Trajectory) -> Iterator[Issue]:
     """Expressions along a phase that have no value somewhere on its guess."""
     spec, phase = problem.phases[index], model.phases[index]
+    form = phase.chain  # whatever the method: it needs no natives
     fractions = np.linspace(0.0, 1.0, _SAMPLES)
     times = guess.start + (guess.end - guess.start) * fractions
-    x = _within(phase, phase.states, guess.sample(phase.states, fractions))
-    u = _within(phase, phase.controls, guess.sample(phase.controls, fractions))
+    x = _within(phase, form.states, guess.sample(form.states, fractions))
+    u = _within(phase, form.controls, guess.sample(form.controls, fractions))
     named = list(_expressions(spec))
+    given = {static.name: static.guess for static in model.statics}
+    given |= {f"initial.{name}": float(row[0]) for name, row in zip(form.states, x, strict=True)}
+    given["initial.t"] = guess.start
     with np.errstate(all="ignore"):
         trees = [expression.tree for _, expression in named]
-        statics = {static.name: static.guess for static in model.statics}
-        values = along(phase.form, trees, statics)(times, x, u)
+        values = along(form, trees, given)(times, x, u)
     for (place, _), row in zip(named, values, strict=True):
         bad = np.flatnonzero(~np.isfinite(row))
         if len(bad):
@@ -93,9 +96,9 @@ def _within(phase: Phase, names: Sequence[str], values: Array) -> Array:
     """A guess (names, samples) clipped to its limits, as the program's start is."""
     inside = values.copy()
     for row, name in enumerate(names):
-        inside[row] = np.clip(inside[row], *phase.bounds[name])
-        inside[row, 0] = np.clip(inside[row, 0], *phase.initial[name])
-        inside[row, -1] = np.clip(inside[row, -1], *phase.final[name])
+        inside[row] = np.clip(inside[row], *phase.bounds.get(name, OPEN))
+        inside[row, 0] = np.clip(inside[row, 0], *phase.initial.get(name, OPEN))
+        inside[row, -1] = np.clip(inside[row, -1], *phase.final.get(name, OPEN))
     return inside
 
 
@@ -119,8 +122,11 @@ def _pointer(problem: Problem, label: RowLabel) -> str:
                 f"{field} {row.name}": f"{field}/{number}/expression"
                 for number, row in enumerate(rows)
             }
-        if label.name in pointers and label.phase in (None, index):
+        if label.name in pointers and label.phase == index:
             return f"/phases/{index}/{pointers[label.name]}"
+    links = {f"linkage {row.name}": number for number, row in enumerate(problem.linkages)}
+    if label.name in links and label.phase is None:
+        return f"/linkages/{links[label.name]}/expression"
     return "/guess"
 
 

@@ -3,13 +3,11 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from schemas.events import MeshSolved
 from schemas.problem import Problem
 from schemas.results import finite
 from solver.backends import NlpStatus
-from solver.certificate.case import certificate_tolerance
+from solver.demands import demands
 from solver.model import Model
 from solver.refinement.curves import decay, seams
 from solver.refinement.meshed import Meshed
@@ -18,8 +16,11 @@ from solver.run import Run
 from solver.solve_mesh import SolvedMesh, Start, solve_mesh
 from solver.transcribe import Setting
 
-_JUST_ABOVE = 1.01
 _LOST = 0.1
+"""A mesh is lost whose objective is so much higher than that of a coarser one, relative."""
+
+_RISES = 30
+"""In tolerances: the same after an accurate mesh."""
 
 Publish = Callable[[Sequence[SolvedMesh]], None]
 """Takes the meshes solved so far, the last of them perhaps unfinished."""
@@ -46,24 +47,27 @@ def solve_meshes(
         mesh = solve_mesh(
             problem, model, start, run, lambda unfinished: publish([*solved, unfinished])
         )
-        solved.append(_not_lost(mesh, solved))
+        solved.append(_not_lost(problem, mesh, solved))
         run.on_event(_event(problem, solved))
         publish(solved)
         start = None if enough(mesh) else _next(problem, start, solved, run)
     return solved
 
 
-def _not_lost(mesh: SolvedMesh, before: Sequence[SolvedMesh]) -> SolvedMesh:
-    """The mesh; not optimal where it is much worse than a coarser one from which it started.
+def _not_lost(problem: Problem, mesh: SolvedMesh, before: Sequence[SolvedMesh]) -> SolvedMesh:
+    """The mesh; not optimal where it is worse than a coarser one from which it started.
 
-    The coarser optimum is nearly feasible on the finer mesh, which can only lower it. Where many
-    orders of magnitude meet, as with fourth derivatives on very short segments, a solver may
-    still end elsewhere and call it optimal.
+    The coarser optimum is nearly feasible on the finer mesh, which can only lower it; very nearly
+    where the coarser mesh is accurate. Where many orders of magnitude meet, as with fourth
+    derivatives on very short segments, a solver may still end elsewhere and call it optimal.
     """
-    if not before or not mesh.optimal or not before[-1].optimal:
+    settings = problem.refinement
+    if settings is None or not before or not mesh.optimal or not before[-1].optimal:
         return mesh
+    accurate = before[-1].max_error <= settings.tolerance
+    rise = min(_LOST, _RISES * settings.tolerance) if accurate else _LOST
     least = before[-1].objective
-    if mesh.objective <= least + _LOST * (1 + abs(least)):
+    if mesh.objective <= least + rise * (1 + abs(least)):
         return mesh
     return replace(mesh, outcome=replace(mesh.outcome, status=NlpStatus.DIVERGED))
 
@@ -71,17 +75,10 @@ def _not_lost(mesh: SolvedMesh, before: Sequence[SolvedMesh]) -> SolvedMesh:
 def _next(problem: Problem, start: Start, solved: Sequence[SolvedMesh], run: Run) -> Start | None:
     """The next mesh, or None where this one is the last."""
     settings, last = problem.refinement, solved[-1]
-    if settings is None or not last.optimal:
-        return None
-    allowed = 0.5 * certificate_tolerance(problem)  # of the integrals: half of what is judged
-    if last.max_error <= settings.tolerance and (
-        last.integral_error <= allowed or _stuck(solved, settings.tolerance)
-    ):
-        return None
-    if len(solved) >= settings.max_iterations:
+    if settings is None or not last.optimal or len(solved) >= settings.max_iterations:
         return None
     with run.stage("refine"):
-        meshes = next_meshes(_known(solved, settings.tolerance, allowed), settings, run.seconds())
+        meshes = next_meshes(_known(problem, solved), settings, run.seconds())
     if meshes is None:
         return None
     setting = replace(
@@ -90,41 +87,30 @@ def _next(problem: Problem, start: Start, solved: Sequence[SolvedMesh], run: Run
         guesses=last.trajectories,
         statics=list(last.statics.values()),
     )
-    return Start(start.number + 1, setting, warm=True)
+    return Start(start.number + 1, setting, warm=True, spare=last.max_error <= settings.tolerance)
 
 
-def _stuck(solved: Sequence[SolvedMesh], tolerance: float) -> bool:
-    """Whether the last mesh, made for the integrals' sake, was of little use to them."""
-    if len(solved) < 2 or solved[-2].max_error > tolerance:
-        return False
-    return not solved[-1].integral_error < solved[-2].integral_error / 4
-
-
-def _known(solved: Sequence[SolvedMesh], tolerance: float, allowed: float) -> list[Meshed]:
-    """What refinement may know of each phase's last mesh.
-
-    A segment whose share in the integrals is off by more than its part of what is ``allowed``
-    counts as just above the tolerance: it is cut, but no finer than its states ask for.
-    """
+def _known(problem: Problem, solved: Sequence[SolvedMesh]) -> list[Meshed]:
+    """What refinement may know of each phase's last mesh."""
     last = solved[-1]
-    share = allowed / sum(len(errors) for errors in last.errors)
     before = solved[-2].setting.meshes if len(solved) > 1 else [None] * len(last.phases)
     phases = []
-    for transcription, mesh, own, sums, result, old in zip(
+    for transcription, mesh, errors, least, result, old in zip(
         last.setting.transcriptions,
         last.setting.meshes,
         last.errors,
-        last.integral_errors,
+        demands(problem, solved),
         last.phases,
         before,
         strict=True,
     ):
-        errors = np.where(sums > share, np.fmax(own, _JUST_ABOVE * tolerance), own)
         if transcription.rigid:  # nothing is cut where there is no error
-            phases.append(Meshed(mesh, 0 * own, transcription.error_order))
+            phases.append(Meshed(mesh, 0 * errors, transcription.error_order))
             continue
         rates = None if mesh.degrees is None else decay(result, mesh.degrees)
-        phases.append(Meshed(mesh, errors, transcription.error_order, seams(result), rates, old))
+        phases.append(
+            Meshed(mesh, errors, transcription.error_order, seams(result), rates, old, least)
+        )
     return phases
 
 

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from schemas.events import StageStarted
 from schemas.problem import Problem
 from schemas.results import PhaseResult
-from solver.backends import NlpStatus, Outcome, Watch, make_backend
+from solver.backends import NlpStatus, Outcome, Watch
 from solver.diagnosis import check_start
+from solver.findings import Findings, find
 from solver.lowering.used import used_integrals
 from solver.model import Model
 from solver.nlp.health import scale_warnings, unused_warnings
@@ -21,6 +22,7 @@ from solver.nlp.scaling import Scaling, typical_scaling
 from solver.nlp.task import NlpTask
 from solver.portfolio import Won
 from solver.refinement.error import segment_errors
+from solver.refinement.excess import excess
 from solver.refinement.integrals import integral_errors
 from solver.run import Run
 from solver.solving import solve_task
@@ -33,25 +35,30 @@ from solver.transcribe import (
     transcribe,
     with_costates,
 )
-from solver.unmet import unmet
 
 Array = NDArray[np.float64]
+
+_NOTHING = Findings()
 
 
 @dataclass(frozen=True, slots=True)
 class Start:
-    """From where a mesh is solved. ``number`` counts meshes from 0; ``warm``: nearly optimal."""
+    """From where a mesh is solved. ``number`` counts meshes from 0; ``warm``: nearly optimal.
+
+    ``spare``: the mesh before will do where this one comes to nothing.
+    """
 
     number: int
     setting: Setting
     warm: bool
+    spare: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class SolvedMesh:
     """What solving one mesh gave.
 
-    ``errors`` and ``integral_errors`` (segments,) per phase, ``switches`` in seconds.
+    ``errors``, ``integral_errors`` and ``excess`` (segments,) per phase, ``switches`` in seconds.
     """
 
     setting: Setting
@@ -63,7 +70,9 @@ class SolvedMesh:
     statics: dict[str, float]
     errors: list[Array]
     integral_errors: list[Array]
+    excess: list[Array]
     residuals: list[RowResidual]
+    advice: Sequence[str]
     redundancy: Redundancy
     warnings: Sequence[str]
     variables: int
@@ -87,6 +96,11 @@ class SolvedMesh:
         return max(float(np.sum(errors)) for errors in self.integral_errors)
 
     @property
+    def largest_excess(self) -> float:
+        """How far the curves leave their limits between the nodes, at the worst."""
+        return float(np.max(np.concatenate(self.excess)))
+
+    @property
     def max_error(self) -> float:
         """The largest error of a segment."""
         return float(np.max(np.concatenate(self.errors)))
@@ -106,21 +120,24 @@ class _Built:
     warnings: Sequence[str]
     began: float
 
-    def unmet(self, outcome: Outcome, run: Run, number: int) -> list[RowResidual]:
-        """Where the program is infeasible: the constraints that give way if all of them may."""
-        if outcome.status is not NlpStatus.INFEASIBLE or run.stopped():
-            return []
-        run.on_event(StageStarted(stage="solve", note="which constraints cannot be met"))
-        backend = make_backend(self.problem.solver.backend)
-        watch = run.watch(number, lambda _: None)
-        program = self.transcribed.program
-        return unmet(backend, self.problem.solver, watch, program, self.scaling, self.task) or []
+    def findings(self, outcome: Outcome, run: Run, number: int) -> Findings:
+        """What a failed solve tells."""
+        if outcome.status is NlpStatus.INFEASIBLE:
+            if run.stopped():
+                return Findings()
+            note = "which constraints cannot be met"
+            run.on_event(StageStarted(stage="solve", note=note))
+        return find(
+            outcome,
+            self.problem.solver,
+            self.transcribed.program,
+            self.scaling,
+            self.task,
+            lambda: run.watch(number, lambda _: None),
+        )
 
-    def read(self, won: Won, unmet: Sequence[RowResidual] = ()) -> SolvedMesh:
-        """The trajectories at a point of the NLP, their errors, and what is violated there.
-
-        ``unmet`` are the constraints that cannot be met; else those violated at the point count.
-        """
+    def read(self, won: Won, findings: Findings = _NOTHING) -> SolvedMesh:
+        """The trajectories at a point of the NLP, their errors, and what is violated there."""
         outcome, program, scaling = won.outcome, self.transcribed.program, self.scaling
         w, rows = outcome.point.z * scaling.columns, outcome.point.rows * scaling.rows
         extracted = extract(self.transcribed, w)
@@ -141,7 +158,9 @@ class _Built:
             statics=statics,
             errors=self._errors(phases, statics),
             integral_errors=self._integral_errors(extracted, statics),
-            residuals=[*unmet] or ranked_residuals(program, scaling, w, rows),
+            excess=self._excess(phases, statics),
+            residuals=[*findings.residuals] or ranked_residuals(program, scaling, w, rows),
+            advice=findings.advice,
             redundancy=self.redundancy,
             warnings=self.warnings,
             variables=program.variables.size,
@@ -155,6 +174,16 @@ class _Built:
         return [
             segment_errors(phase.chain, result, statics).reshape(-1, method.pieces).max(axis=1)
             for phase, result, method in parts
+        ]
+
+    def _excess(self, phases: list[PhaseResult], statics: dict[str, float]) -> list[Array]:
+        """How far the curves leave their limits in each segment."""
+        parts = zip(
+            self.problem.phases, self.model.phases, phases, self.setting.meshes, strict=True
+        )
+        return [
+            excess(spec, phase.chain, result, statics, mesh.segments)
+            for spec, phase, result, mesh in parts
         ]
 
     def _integral_errors(
@@ -201,10 +230,11 @@ def solve_mesh(
             lambda: run.watch(start.number, keep),
             lambda note: run.on_event(StageStarted(stage="solve", note=note)),
             warm=start.warm,
+            once=start.spare,
         )
-        unmet = built.unmet(won.outcome, run, start.number)
+        findings = built.findings(won.outcome, run, start.number)
     with run.stage("refine"):
-        return built.read(won, unmet)
+        return built.read(won, findings)
 
 
 def _build(problem: Problem, model: Model, start: Start) -> _Built:

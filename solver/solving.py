@@ -11,6 +11,7 @@ from solver.nlp.task import NlpTask
 from solver.portfolio import Portfolio, Won
 
 _OVER = (NlpStatus.OPTIMAL, NlpStatus.STOPPED, NlpStatus.TIME_LIMIT)
+_HASTE = 500  # iterations
 _NEARLY = (NlpStatus.ACCEPTABLE, NlpStatus.DIVERGED)
 
 
@@ -21,8 +22,11 @@ def solve_task(
     announce: Callable[[str], None],
     *,
     warm: bool,
+    once: bool = False,
 ) -> Won:
     """Solve; from a warm start first where there is one, and cold again where that fails.
+
+    ``once``: not again, and not for long; there is an optimum that will do.
 
     With ``settings.portfolio`` other strategies are tried after a failure. ``announce`` hears of
     every attempt but the first.
@@ -40,8 +44,11 @@ def solve_task(
         outcome = backend.solve(task, settings, watch(), warm=warm, strategy=strategy)
         return _judged(task, outcome, settings.tolerance)
 
+    if once:
+        fewer = min(_HASTE, settings.max_iterations)
+        settings = settings.model_copy(update={"max_iterations": fewer, "portfolio": False})
     outcome = attempt(task, warm=warm)
-    if warm and outcome.status not in _OVER:
+    if warm and not once and outcome.status not in _OVER:
         announce("again, from a cold start")
         again = attempt(task)
         if again.status is NlpStatus.OPTIMAL or outcome.status is not NlpStatus.ACCEPTABLE:

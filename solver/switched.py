@@ -76,7 +76,7 @@ def _solve_parts(
 ) -> tuple[Plan, list[SolvedMesh]]:
     """The parts between all cuts, from what was ``solved`` ``last``."""
     count = sum(len(cut.times) for cut in cuts)
-    run.on_event(StageStarted(stage="build", note=f"split at {count} switches"))
+    run.on_event(StageStarted(stage="build", note=f"split at {count} switch{'es' * (count != 1)}"))
     with run.stage("build"):
         parted, plan = split(problem, cuts)
         model, setting = prepare(parted)
@@ -109,6 +109,7 @@ def joined(plan: Plan, mesh: SolvedMesh) -> SolvedMesh:
         trajectories=whole(plan, mesh.trajectories),
         errors=[np.concatenate(own) for own in by_phase(plan, mesh.errors)],
         integral_errors=[np.concatenate(own) for own in by_phase(plan, mesh.integral_errors)],
+        excess=[np.concatenate(own) for own in by_phase(plan, mesh.excess)],
         residuals=[
             row if row.phase is None else replace(row, phase=int(owners[row.phase]))
             for row in mesh.residuals

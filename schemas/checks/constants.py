@@ -1,7 +1,7 @@
 """Constants of a phase, evaluated once, each failure reported once and at its own place."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from schemas.errors import Issue
@@ -19,17 +19,19 @@ class Constants:
     """Evaluates constants over a phase's parameters; collects the issues on the way.
 
     What rests on a parameter that cannot be evaluated counts as unknown, without an issue of
-    its own.
+    its own. ``chosen`` are the names of which the solver chooses the values.
     """
 
     known: dict[str, float] = field(default_factory=dict)
     broken: set[str] = field(default_factory=set)
+    chosen: frozenset[str] = frozenset()
     issues: list[Issue] = field(default_factory=list)
 
     @classmethod
-    def of(cls, phase: Phase, root: tuple[Part, ...]) -> "Constants":
+    def of(cls, phase: Phase, root: tuple[Part, ...], statics: Iterable[str] = ()) -> "Constants":
         """The phase's parameters, in order."""
-        self = cls()
+        names = [*statics, *phase.system.state_names, *phase.system.control_names]
+        self = cls(chosen=frozenset(names))
         for name, raw in phase.system.parameters.items():
             value = self.value(raw, (*root, "system", "parameters", name))
             if value is None:
@@ -47,8 +49,19 @@ class Constants:
         try:
             return scalar(raw, self.known)
         except ExpressionError as error:
-            self.issues.append(Issue(pointer(*parts), error.message, error.hint, error.column))
+            hint = self._chosen(raw, parts) or error.hint
+            self.issues.append(Issue(pointer(*parts), error.message, hint, error.column))
             return None
+
+    def _chosen(self, raw: Scalar, parts: tuple[Part, ...]) -> str:
+        """Where an expression may stand that rests on what the solver chooses."""
+        tree = raw.source.tree if isinstance(raw.source, Expression) else None
+        name = next((n.name for n in names_in(tree) if n.name in self.chosen), "") if tree else ""
+        if not name:
+            return ""
+        if "parameters" in parts:
+            return f"the solver chooses '{name}': move this to 'define'"
+        return f"the solver chooses '{name}': write a constraint, in 'path' or 'boundary'"
 
     def interval(self, bound: Bound, parts: tuple[Part, ...]) -> Interval | None:
         """Both limits, infinite where open; None with an issue where they make no interval."""

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping
 
 from schemas.errors import Issue
+from schemas.expressions import derivative, names_in, split
 from schemas.pointers import Part, pointer
 from schemas.problem import Problem
 from schemas.suggest import did_you_mean
@@ -28,6 +29,29 @@ def check(problem: Problem) -> Iterator[Issue]:
                     f"{count} residuals for {len(names)} coordinates",
                     "give one equation of motion for every coordinate",
                 )
+            else:
+                yield from _without_acceleration(system, root)
+
+
+def _without_acceleration(system: SecondOrder, root: tuple[Part, ...]) -> Iterator[Issue]:
+    """Coordinates whose accelerations no residual depends on: nothing would give them."""
+    used: set[str] = set()
+    trees = {name: expression.tree for name, expression in system.define.items()}
+    ahead = [expression.tree for expression in system.residual or []]
+    while ahead:
+        new = {name.name for name in names_in(ahead.pop())} - used
+        used |= new
+        ahead += [trees[split(name).base] for name in new if split(name).base in trees]
+        if any(split(name).order and split(name).base in trees for name in new):
+            return  # a derivative of an intermediate may bring in any acceleration
+    for name in system.coordinates:
+        if not any(split(word).base == name and split(word).order >= 2 for word in used):
+            yield Issue(
+                pointer(*root, "residual"),
+                f"no residual depends on the acceleration {derivative(name, 2)}",
+                "write the equations of motion; what holds without accelerations is a constraint "
+                "in 'path'",
+            )
 
 
 def _matched(

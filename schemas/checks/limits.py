@@ -7,6 +7,7 @@ from schemas.checks.constants import Constants, Interval
 from schemas.checks.places import variables
 from schemas.errors import Issue
 from schemas.expressions import derivative, split
+from schemas.habits import as_rate
 from schemas.phases import Constraint, Phase
 from schemas.pointers import Part, pointer
 from schemas.problem import Problem
@@ -19,7 +20,7 @@ def check(problem: Problem) -> Iterator[Issue]:
     yield from _statics(problem, alone)
     for index, phase in enumerate(problem.phases):
         root = ("phases", index)
-        constants = Constants.of(phase, root)
+        constants = Constants.of(phase, root, problem.static)
         yield from constants.drain()
         yield from _bounds(phase, root, constants)
         yield from _constraints(phase.path, (*root, "path"), constants)
@@ -66,7 +67,8 @@ def is_variable(name: str, known: Mapping[str, int]) -> bool:
 def not_a_variable(name: str, known: Mapping[str, int], parts: tuple[Part, ...]) -> Issue:
     """The issue of a name that should be a state or a control, or a derivative of one."""
     _, order, base = split(name)
-    hint = did_you_mean(name, [derivative(word, order) for word in known])
+    hint = as_rate(name, (word for word, most in known.items() if most))
+    hint = hint or did_you_mean(name, [derivative(word, order) for word in known])
     if name == "t":
         hint = "'time' bounds the time"
     elif base in known:

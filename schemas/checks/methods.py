@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from schemas.checks.degrees import nonlinear
 from schemas.errors import Issue
-from schemas.methods import DirCol5i, MultipleShooting
+from schemas.methods import ChebyshevLobatto, DirCol5i, MultipleShooting
 from schemas.phases import Phase
 from schemas.pointers import Part, pointer
 from schemas.problem import Problem
@@ -31,6 +31,13 @@ def check(problem: Problem) -> Iterator[Issue]:
                 f"dircol5i is for second_order systems, that of the phase '{phase.name}' is an "
                 f"{phase.system.kind}",
                 "write it as second_order, or choose another method, such as hermite_simpson",
+            )
+        if isinstance(method, ChebyshevLobatto) and not phase.system.control_names:
+            yield Issue(
+                pointer(*chosen),
+                "chebyshev_lobatto states the dynamics at both ends of a segment, once more than "
+                f"there are states: the phase '{phase.name}' has no control to make up for that",
+                "choose another method, such as radau",
             )
         if isinstance(method, MultipleShooting):
             yield from _explicit(phase, place)

@@ -7,6 +7,7 @@ from schemas.errors import Issue
 from schemas.expressions import Name, derivative, names_in, split
 from schemas.expressions.errors import quoted
 from schemas.expressions.names import DERIVATIVES
+from schemas.habits import as_rate
 from schemas.phases import Phase
 from schemas.pointers import pointer
 from schemas.problem import Problem
@@ -35,8 +36,9 @@ def check(problem: Problem) -> Iterator[Issue]:
 
 def _hint(name: str, place: Place) -> str:
     elsewhere = _elsewhere(name, place, place.phase) if place.phase else ""
-    if elsewhere or (elsewhere := _habit(name, place)):
-        return elsewhere
+    told = elsewhere or _habit(name, place) or _misplaced(name, place)
+    if told:
+        return told
     _, order, _ = split(name)
     orders = place.visible.orders
     some = [derivative(word, order) for word in place.visible.words if orders[word] >= order]
@@ -58,6 +60,18 @@ def _habit(name: str, place: Place) -> str:
     if name in _TIMES:
         along = "t" in place.visible
         return "the time is t" if along else "the final time is final.t, the time taken duration"
+    return as_rate(name, (word for word, most in place.visible.orders.items() if most))
+
+
+def _misplaced(name: str, place: Place) -> str:
+    """What to write for names that stand here in another form."""
+    prefix, order, base = split(name)
+    ends = [derivative(f"{prefix}{end}.{base}", order) for end in ("initial", "final")]
+    if all(end in place.visible for end in ends):
+        return "write " + " or ".join(ends)
+    of_phases = any(word.endswith(f".{base}") for word in place.visible.orders)
+    if prefix and base in place.visible and not of_phases:
+        return f"write {base}, without the name of a phase"
     return ""
 
 
@@ -69,8 +83,14 @@ def _elsewhere(name: str, place: Place, phase: Phase) -> str:
         return "a motion in closed form has no derivatives; write the formula of the rate"
     if "t" in place.visible:
         return _along(name, place, phase)
-    inside = not prefix and (name == "t" or varies)
-    return f"write initial.{name} or final.{name}" if inside else ""
+    if prefix or not (name == "t" or varies):
+        return ""
+    mend = f"write initial.{name} or final.{name}"
+    if place.parts[0] != "objective":
+        return mend
+    if name == "t":
+        return f"{mend}, or duration for the time taken"
+    return f"{mend}; what adds up along the phase is an integral: name it in 'integrals'"
 
 
 def _along(name: str, place: Place, phase: Phase) -> str:

@@ -40,7 +40,10 @@ _NO_CONDITION = (
 )
 _NO_COMPARISON = (
     "comparisons are not part of the language",
-    "a limit is a constraint in 'path' or 'boundary', with 'lower' and 'upper'",
+    (
+        "for an equation write the difference of its sides; a limit is a constraint in 'path' or "
+        "'boundary', with 'lower' and 'upper'"
+    ),
 )
 _NO_STRING = ("strings are not part of the language", "write names without quotes")
 _NO_BITS = ("bitwise and logical operators are not part of the language", _NO_CONDITION[1])

@@ -131,13 +131,19 @@ class Client(SweepCalls):
 
     def validate(self, problem: Problem) -> list[Issue]:
         """What is wrong with a problem; nothing is stored. An empty list: it is fine."""
+        return self.check(problem)[0]
+
+    def check(self, problem: Problem) -> tuple[list[Issue], list[str]]:
+        """What is wrong with a problem; and warnings about one that is fine."""
         query = {"validate_only": "true"}
         try:
             body = encoded(read_problem(problem))
-            self._transport.json("POST", "/v1/jobs", content=body, headers=_JSON, params=query)
+            said = self._transport.json(
+                "POST", "/v1/jobs", content=body, headers=_JSON, params=query
+            )
         except BadProblem as error:
-            return error.issues
-        return []
+            return error.issues, []
+        return [], list(said.get("warnings", []))
 
     def job(self, job_id: str) -> Job:
         """How a job is doing."""

@@ -66,16 +66,21 @@ def validate(problem: Problem) -> list[Issue]:
 
     What only the built model can tell (a NaN at the guess) shows when it is solved.
     """
+    return check(problem)[0]
+
+
+def check(problem: Problem) -> tuple[list[Issue], list[str]]:
+    """What is wrong with a problem; and warnings about one that is fine."""
     document = read_document(problem)
     with _needs("worker", "checking a problem in this process"):
         from schemas.reading import read_problem
+        from schemas.remarks import remarks
 
         try:
             with _translated():
-                read_problem(document, _inline())
+                return [], list(remarks(read_problem(document, _inline())))
         except BadProblem as error:
-            return error.issues
-    return []
+            return error.issues, []
 
 
 def _inline() -> Callable[[dict[str, Any]], dict[str, Any]]:

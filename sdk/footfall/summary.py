@@ -48,7 +48,7 @@ def summarize(result: Mapping[str, Any]) -> str:
     if mesh:
         error = f"largest error {number(mesh['max_error'], 3)}"
         lines.insert(4, f"  mesh         {plural(mesh['segments'], 'segment')}, {error}")
-    lines += _parts(result)
+    lines += _parts(result, mesh)
     if solver["residuals"] and result["status"] != "converged":
         worst = solver["residuals"][0]
         lines.append(f"  worst        {worst['name']}: {number(worst['value'], 3)}{place(worst)}")
@@ -63,8 +63,8 @@ def _solver(solver: Mapping[str, Any]) -> str:
     return text if strategy == "default" else f"{text}, strategy {words(strategy)}"
 
 
-def _parts(result: Mapping[str, Any]) -> list[str]:
-    """The phases where there are several, the static values, the number of stages and minima."""
+def _parts(result: Mapping[str, Any], mesh: Mapping[str, Any]) -> list[str]:
+    """The phases where there are several, the statics, the switches, the stages and minima."""
     lines, phases = [], result["phases"]
     if len(phases) > 1:
         lines = [f"  phase        {_phase(phase)}" for phase in phases]
@@ -72,6 +72,9 @@ def _parts(result: Mapping[str, Any]) -> list[str]:
         f"  static       {name} = {number(value, 10)}"
         for name, value in result.get("static", {}).items()
     ]
+    if switches := mesh.get("switches"):
+        at = ", ".join(number(time, 6) for time in switches)
+        lines.append(f"  switches     controls switch at t = {at} s")
     if stages := result.get("stages"):
         lines.append(f"  stages       {len(stages)} solved in a row")
     if minima := result.get("minima"):

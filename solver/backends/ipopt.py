@@ -87,6 +87,9 @@ def _options(settings: SolverSettings, watch: Watch, *, warm: bool) -> dict[str,
         # The systems are scaled and nearly banded: what MUMPS would do about that only costs.
         "ipopt.mumps_permuting_scaling": 0,
         "ipopt.mumps_pivot_order": 0,
+        # Ten times sooner on to the next barrier than by default: measured on the gallery, as good
+        # as that for most, and twice as fast where absolute values are smoothed.
+        "ipopt.barrier_tol_factor": 100.0,
         "ipopt.max_wall_time": float(np.clip(watch.remaining(), 1e-3, 1e6)),
         "iteration_callback_step": 1,
     }

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 import numpy as np
-from scipy.integrate import DOP853
+import scipy  # loads scipy.integrate, which takes long, when it is first asked for
 
 from solver.numeric import Array
 
@@ -66,7 +66,7 @@ class Integrator:
             return last
 
         with np.errstate(all="ignore"):
-            solver = DOP853(
+            solver = scipy.integrate.DOP853(
                 watched,
                 start,
                 y,

@@ -23,7 +23,8 @@ def legendre_radau(points: int) -> tuple[float, ...]:
     """
     series = np.zeros(points + 1)
     series[-2:] = 1.0
-    return tuple(np.sort(1.0 - legendre.legroots(series).real) / 2.0)
+    inner = np.sort(1.0 - legendre.legroots(series).real)[:-1] / 2.0
+    return (*inner.tolist(), 1.0)  # exactly: it is the knot
 
 
 def differentiation_matrix(nodes: Array) -> Array:

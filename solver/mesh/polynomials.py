@@ -2,10 +2,32 @@
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import comb
 
 from footfall.curves import fit
 
 Array = NDArray[np.float64]
+
+
+def corners(nodes: Array) -> Array:
+    """The Bernstein coefficients on [0, 1] of the polynomial through values at the nodes.
+
+    A polynomial lies within the range of its Bernstein coefficients; the first and the last are
+    its values at the ends.
+
+    Parameters
+    ----------
+    nodes
+        Places in [0, 1], shape (n,).
+
+    Returns
+    -------
+    Shape (n, n), to be multiplied by the values.
+    """
+    degree = len(nodes) - 1
+    which = np.arange(degree + 1)
+    basis = comb(degree, which) * nodes[:, None] ** which * (1 - nodes[:, None]) ** which[::-1]
+    return np.asarray(np.linalg.inv(basis))
 
 
 def from_powers(powers: Array) -> Array:

@@ -43,7 +43,6 @@ def _phase(spec: PhaseSpec, form: Form, chain: Form, extra: Slacks | None, *, fi
 
     path = [_constraint("path", row, constants) for row in spec.path]
     path += _limits("bound", spec.bounds, bounds, constants)
-    path += _rows_of(form, extra)
     boundary = [_constraint("boundary", row, constants) for row in spec.boundary]
     for side, given in (("initial", spec.initial), ("final", spec.final)):
         boundary += _limits(side, given, bounds, constants, prefix=f"{side}.")
@@ -55,6 +54,7 @@ def _phase(spec: PhaseSpec, form: Form, chain: Form, extra: Slacks | None, *, fi
         natives=form.natives or _initials(form),
         integrals=extra.integrals if extra else _trees(spec),
         path=tuple(path),
+        held=tuple(_rows_of(form, extra)),
         boundary=tuple(boundary),
         bounds=bounds,
         initial=ends(spec.initial),
@@ -99,11 +99,12 @@ def _limits(
     prefix: str = "",
 ) -> list[Constraint]:
     """Limits on what is no variable of the form, such as an acceleration, as constraints."""
-    return [
+    rows = [
         Constraint(f"{label} {name}", Name(prefix + name), _interval(bound, constants))
         for name, bound in given.items()
         if name not in variables
     ]
+    return [row for row in rows if row.limits.finite]
 
 
 def _interval(limited: Bound | ConstraintSpec | None, constants: Mapping[str, float]) -> Interval:

@@ -59,7 +59,9 @@ class Phase:
     natives
         Names that the method supplies along the phase without variables of their own.
     path, boundary
-        Constraints along the phase and over its ends, those of the form included.
+        Constraints along the phase and over its ends.
+    held
+        What the form itself asks for along the phase: the unknowns' rows first.
     bounds, initial, final
         An interval for every state and control of the form.
     start
@@ -75,6 +77,7 @@ class Phase:
     natives: tuple[str, ...]
     integrals: Mapping[str, Tree]
     path: tuple[Constraint, ...]
+    held: tuple[Constraint, ...]
     boundary: tuple[Constraint, ...]
     bounds: Mapping[str, Interval]
     initial: Mapping[str, Interval]

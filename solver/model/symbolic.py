@@ -82,11 +82,9 @@ def phase_functions(phase: Phase, statics: Sequence[str], *, eliminate: bool) ->
 
 
 def path_rows(phase: Phase, *, eliminate: bool) -> list[Constraint]:
-    """The constraints along the phase; those of unknowns fall away where these are eliminated."""
-    if not eliminate:
-        return list(phase.path)
-    labels = {label for group in phase.form.unknowns for label in group.labels}
-    return [row for row in phase.path if row.label not in labels]
+    """The constraints along the phase, the user's first; those of unknowns unless eliminated."""
+    solved = {label for group in phase.form.unknowns for label in group.labels if eliminate}
+    return [*phase.path, *(row for row in phase.held if row.label not in solved)]
 
 
 def _uses(row: SX, symbols: SX) -> bool:

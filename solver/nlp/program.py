@@ -16,6 +16,8 @@ from solver.nlp.variables import Variables
 Array = NDArray[np.float64]
 Indices = NDArray[np.int_]
 
+_DIGITS = 10  # of a fraction: shorter segments do not occur
+
 
 class RowLabel(NamedTuple):
     """What a constraint row is: its name, its phase, its place there (NaN: the ends)."""
@@ -63,7 +65,8 @@ class Program:
                 # Two apart, so that one phase's end and the next one's start are two places.
                 places[block.indices] = 2.0 * block.phase + block.fractions
         timed, nodes = np.isfinite(places), np.full(len(places), -1)
-        nodes[timed] = np.unique(places[timed], return_inverse=True)[1]
+        # Both sides of a knot compute its place; they may differ by round-off.
+        nodes[timed] = np.unique(places[timed].round(_DIGITS), return_inverse=True)[1]
         return nodes
 
     def labels(self) -> Iterator[RowLabel]:

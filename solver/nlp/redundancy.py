@@ -4,10 +4,10 @@ A redundant row leaves the multipliers undetermined and breaks most solvers. The
 and as rows of their own the values fixed at the end of each phase, are factorised in order; a
 row whose pivot vanishes is suspected to lie in the span of those before it. It counts as implied
 if it does so at two random points near the guess, values included: then it is dropped. Rows that
-contradict the others are kept, for the solver to refuse and for the report to name.
+contradict the others are kept, for the solver to refuse and for the report to name. Inequalities
+whose value the equalities decide are dropped, too (``decided.py``), without a word: they hold.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Self
 
@@ -17,6 +17,7 @@ from scipy import sparse
 from scipy.sparse.linalg import splu
 
 from solver.nlp.assembly import Nlp
+from solver.nlp.decided import decided_rows
 from solver.nlp.program import Program
 from solver.nlp.scaling import Scaling
 
@@ -35,12 +36,14 @@ _AT_ONCE = 64  # suspects: bounds the memory where there is one at every node
 class Redundancy:
     """What is implied: positions of rows and of fixed variables, and how to call them.
 
-    ``names`` has each name once, at however many nodes it stands; ``conflicts`` names
-    equalities that depend on others but ask for another value.
+    ``decided`` are positions of inequalities; ``names`` has each name of an equality once, at
+    however many nodes it stands; ``conflicts`` names equalities that depend on others but ask for
+    another value.
     """
 
     rows: Indices
     fixed: Indices
+    decided: Indices
     names: tuple[str, ...]
     conflicts: tuple[str, ...]
 
@@ -106,12 +109,14 @@ class _Equalities:
 
 
 def find_redundancy(program: Program, scaling: Scaling, nlp: Nlp) -> Redundancy:
-    """Equalities of the program that follow from the others."""
+    """Equalities of the program that follow from the others, inequalities that they decide."""
     equalities = _Equalities.of(program, scaling)
     rng = np.random.default_rng(0)
     nudges = _NUDGE * rng.standard_normal((2, program.variables.size))
-    tests = [equalities.at(nlp, nudge) for nudge in nudges]
-    suspects = _dependent_rows(tests, equalities.shared())
+    first = equalities.at(nlp, nudges[0])
+    suspects = _dependent_rows(*first, equalities.shared())
+    # Most programs have none: then the second point is not worth its evaluation.
+    tests = [first, equalities.at(nlp, nudges[1])] if len(suspects) else [first]
     found = [_deviations(matrix, values, suspects) for matrix, values in tests]
     spanned = np.all([distances < _MATCH for distances, _ in found], axis=0)
     agree = np.all([gaps < _MATCH for _, gaps in found], axis=0)
@@ -119,20 +124,20 @@ def find_redundancy(program: Program, scaling: Scaling, nlp: Nlp) -> Redundancy:
     return Redundancy(
         equalities.rows[implied[implied < split]],
         equalities.fixed[implied[implied >= split] - split],
+        decided_rows(program, scaling, nlp),
         equalities.names(implied),
         equalities.names(suspects[spanned & ~agree]),
     )
 
 
-def _dependent_rows(tests: Sequence[tuple[Matrix, Array]], shared: NDArray[np.bool_]) -> Indices:
+def _dependent_rows(matrix: Matrix, values: Array, shared: NDArray[np.bool_]) -> Indices:
     """Rows in the span of the others, of a dependent set the last ones.
 
     A column that all rows use would fill A A', at the price of its rank cubed; so the pivots are
     taken without the shared ones. That suspects too many, at most one for each such column.
     """
-    if not all(np.all(np.isfinite(matrix.data)) for matrix, _ in tests):
+    if not np.all(np.isfinite(matrix.data)):
         return np.array([], dtype=int)
-    matrix, values = tests[0]
     suspects = _vanishing_pivots(matrix[:, np.flatnonzero(~shared)])
     for _ in range(int(shared.sum())):
         outside = np.flatnonzero(_deviations(matrix, values, suspects)[0] >= _MATCH)
@@ -169,6 +174,8 @@ def _deviations(matrix: Matrix, values: Array, rows: Indices) -> tuple[Array, Ar
     """
     if len(rows) == 0:
         return np.empty(0), np.empty(0)
+    if not np.all(np.isfinite(matrix.data)):
+        return np.full(len(rows), np.inf), np.full(len(rows), np.inf)
     others = np.setdiff1d(np.arange(matrix.shape[0]), rows)
     basis, width = matrix[others], matrix.shape[1]
     corner = -_TRIFLE * sparse.eye_array(len(others))

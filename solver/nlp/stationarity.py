@@ -15,7 +15,7 @@ from solver.nlp.task import NlpTask
 Array = NDArray[np.float64]
 
 _AT = 1e-7  # scaled: how near to a limit a variable or row is held by it
-_SOFT = 1e-11  # keeps dependent rows from making the system singular
+_SOFT = 1e-11  # keeps dependent rows and flat directions from making the system singular
 
 
 def stationary(
@@ -48,8 +48,10 @@ def stationary(
 def _promise(hessian: sparse.csc_matrix, jacobian: sparse.csc_matrix, rest: Array) -> float:
     """By how much the Newton step promises to change the objective; infinite without a step."""
     count = jacobian.shape[0]
-    soft = -_SOFT * sparse.eye(count)
-    system = sparse.bmat([[hessian, jacobian.T], [jacobian, soft]], format="csc")
+    # Without them a model without curvature makes a structurally singular system, at which
+    # SuperLU may read beyond its memory.
+    soft = sparse.diags([_SOFT] * len(rest) + [-_SOFT] * count)
+    system = (sparse.bmat([[hessian, jacobian.T], [jacobian, None]]) + soft).tocsc()
     try:
         step = splu(system).solve(np.concatenate([-rest, np.zeros(count)]))[: len(rest)]
     except RuntimeError:  # singular

@@ -47,13 +47,14 @@ class NlpTask:
         )
 
     def without(self, redundancy: Redundancy) -> Self:
-        """The same, with the equalities opened that others imply."""
+        """The same, with the rows and fixed values opened that others imply."""
+        rows = np.concatenate([redundancy.rows, redundancy.decided])
         return replace(
             self,
             lower=_opened(self.lower, redundancy.fixed, -np.inf),
             upper=_opened(self.upper, redundancy.fixed, np.inf),
-            row_lower=_opened(self.row_lower, redundancy.rows, -np.inf),
-            row_upper=_opened(self.row_upper, redundancy.rows, np.inf),
+            row_lower=_opened(self.row_lower, rows, -np.inf),
+            row_upper=_opened(self.row_upper, rows, np.inf),
         )
 
     def violation(self, rows: Array, z: Array | None = None) -> float:

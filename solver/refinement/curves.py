@@ -1,5 +1,7 @@
 """What the published curves say about smoothness: along a segment, and from one to the next."""
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
@@ -52,38 +54,58 @@ def _rate(sizes: Array) -> float:
 
 
 def seams(result: PhaseResult) -> Array:
-    """How far the controls of neighbouring segments are from one polynomial.
+    """How far the controls of neighbouring segments, and their rates, are from one polynomial.
 
     At each inner knot the piece on its left is continued over the piece on its right and the
-    other way round; the largest difference counts, relative to the control's range on the phase.
+    other way round; the largest difference counts, relative to the series' range on the phase.
 
     Returns
     -------
     Shape (segments - 1,) for the inner knots of ``result.knots``; zero without controls.
     """
+    return _apart(result, lambda left, right: (right, left))
+
+
+def bends(result: PhaseResult) -> Array:
+    """The same, but over the shorter of both pieces only: how far a control bends in a segment.
+
+    A kink bends it by less on shorter segments, a jump does not.
+    """
+    return _apart(result, lambda left, right: (np.minimum(left, right),) * 2)
+
+
+def _apart(result: PhaseResult, reach: Callable[[Array, Array], tuple[Array, Array]]) -> Array:
+    """Over how far to continue on the right and on the left, ``reach`` says by their lengths."""
     inner = np.array(result.knots[1:-1])
     worst = np.zeros(len(inner))
-    group = result.curves.get("controls")
-    if group is None or not group.coefficients or not len(inner):
+    if not len(inner):
         return worst
-    curves = Curves.from_dict(group.model_dump())
-    left, _ = locate(curves.breaks, inner, side="left")
-    right, _ = locate(curves.breaks, inner, side="right")
-    for curve in curves.values():
-        values = curve.coefficients @ chebyshev.chebvander(_PLACES, curve.degree).T
-        span = float(np.ptp(values))
-        if span > _FLOOR * (1 + np.max(np.abs(values))):
-            apart = np.maximum(_beyond(curve, left, right), _beyond(curve, right, left))
-            worst = np.maximum(worst, apart / span)
+    groups = [result.curves[label] for label in ("controls", "rates") if label in result.curves]
+    for curves in (Curves.from_dict(group.model_dump()) for group in groups):
+        left, _ = locate(curves.breaks, inner, side="left")
+        right, _ = locate(curves.breaks, inner, side="right")
+        widths = np.diff(curves.breaks)
+        ahead, back = reach(widths[left], widths[right])
+        for curve in curves.values():
+            values = curve.coefficients @ chebyshev.chebvander(_PLACES, curve.degree).T
+            span = float(np.ptp(values))
+            if span > _FLOOR * (1 + np.max(np.abs(values))):
+                for spread in (ahead, -back):
+                    worst = np.maximum(worst, _difference(curve, left, right, spread) / span)
     return worst
 
 
-def _beyond(curve: Curve, of: NDArray[np.intp], over: NDArray[np.intp]) -> Array:
-    """How far pieces ``of`` are from pieces ``over``, on the spans of the latter."""
+def _difference(
+    curve: Curve, left: NDArray[np.intp], right: NDArray[np.intp], spread: Array
+) -> Array:
+    """How far pieces are apart between their common knot and ``spread`` seconds from it."""
+    times = curve.breaks[right] + spread * (_PLACES[:, None] + 1) / 2
+    return np.asarray(np.max(np.abs(_at(curve, left, times) - _at(curve, right, times)), axis=0))
+
+
+def _at(curve: Curve, piece: NDArray[np.intp], times: Array) -> Array:
+    """Each piece's polynomial, continued, at times (places, pieces)."""
     starts, widths = curve.breaks[:-1], np.diff(curve.breaks)
-    times = starts[over] + widths[over] * (_PLACES[:, None] + 1) / 2
-    s = 2 * (times - starts[of]) / widths[of] - 1
     rows = np.moveaxis(curve.coefficients, -1, 0)
-    continued = chebyshev.chebval(s, rows[:, of], tensor=False)
-    own = chebyshev.chebval(np.broadcast_to(_PLACES[:, None], s.shape), rows[:, over], tensor=False)
-    return np.asarray(np.max(np.abs(continued - own), axis=0))
+    s = 2 * (times - starts[piece]) / widths[piece] - 1
+    return np.asarray(chebyshev.chebval(s, rows[:, piece], tensor=False))

@@ -32,6 +32,8 @@ class Meshed:
         gives it. Needed for a method by degree alone.
     before
         The mesh before this one. What was cut or raised since then is not undone.
+    least
+        The parts of each segment at the least, whatever its error, (segments,).
     """
 
     mesh: Mesh
@@ -40,6 +42,7 @@ class Meshed:
     seams: Array | None = None
     rates: Array | None = None
     before: Mesh | None = None
+    least: NDArray[np.int_] | None = None
 
     @property
     def orders(self) -> NDArray[np.int_]:

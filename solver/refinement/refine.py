@@ -56,8 +56,10 @@ def next_meshes(
 def _plan(phase: Meshed, settings: Refinement) -> tuple[Counts, Counts | None]:
     """Parts of each segment, and points of each of its parts where the method has degrees."""
     if phase.mesh.degrees is None:
-        return count_parts(phase.errors, phase.order, settings), None
-    return hp(phase, settings)
+        parts, points = count_parts(phase.errors, phase.order, settings), None
+    else:
+        parts, points = hp(phase, settings)
+    return parts if phase.least is None else np.maximum(parts, phase.least), points
 
 
 def _single(parts: Counts) -> Flags:

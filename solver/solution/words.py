@@ -5,8 +5,9 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from schemas import resolve
-from schemas.expressions import Expression, warnings_in
+from schemas.corners import corners
 from schemas.problem import Problem
+from schemas.remarks import untied
 from schemas.results import Certificate, PhaseResult, Residual, SolutionStatus
 from solver.nlp.redundancy import Redundancy
 from solver.solution.choose import choose
@@ -130,20 +131,4 @@ def warnings(problem: Problem, redundancy: Redundancy) -> list[str]:
         f"'{name}' depends on other equalities and may contradict them."
         for name in redundancy.conflicts
     ]
-    for place, expression in _expressions(problem):
-        lines += [f"{place}: {note}" for note in warnings_in(expression.tree)]
-    return lines
-
-
-def _expressions(problem: Problem) -> Iterator[tuple[str, Expression]]:
-    for phase in problem.phases:
-        for name, expression in phase.system.define.items():
-            yield name, expression
-        for _, name, expression in phase.system.equations():
-            yield name, expression
-        for name, expression in phase.integrals.items():
-            yield f"integral {name}", expression
-        for row in [*phase.path, *phase.boundary]:
-            yield row.name, row.expression
-    if problem.objective is not None:
-        yield "objective", problem.objective.minimize
+    return [*lines, *untied(problem), *corners(problem)]

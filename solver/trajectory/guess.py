@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,10 +24,25 @@ def initial_guesses(model: Model, guesses: Sequence[Guess]) -> list[Trajectory]:
     end takes the other end's value, and two open ends the admissible value nearest to zero.
     """
     trajectories: list[Trajectory] = []
-    for index, (phase, guess) in enumerate(zip(model.phases, guesses, strict=True)):
+    only = len(model.phases) == 1
+    for index, (phase, guess) in enumerate(zip(_in_time(model.phases), guesses, strict=True)):
         before = trajectories[-1].end if trajectories else None
-        trajectories.append(_guess(phase, guess, before, index))
+        earlier = _earlier(guess, phase, only=only) if isinstance(guess, SolutionGuess) else None
+        if earlier is not None:
+            trajectories.append(_completed(_moved(earlier, phase, before), phase))
+        else:
+            trajectories.append(_guess(phase, guess, before, index))
     return trajectories
+
+
+def _in_time(phases: Sequence[Phase]) -> list[Phase]:
+    """The phases, each ending in time for the least durations and latest ends of those after it."""
+    latest, known = math.inf, []
+    for phase in reversed(phases):
+        end = Interval(phase.end.lower, max(min(phase.end.upper, latest), phase.end.lower))
+        known.append(replace(phase, end=end))
+        latest = end.upper - max(phase.duration.lower, 0.0)
+    return known[::-1]
 
 
 def guessed_statics(model: Model, guess: Guess) -> list[float]:
@@ -44,10 +60,6 @@ def guessed_statics(model: Model, guess: Guess) -> list[float]:
 
 
 def _guess(phase: Phase, guess: Guess, before: float | None, index: int) -> Trajectory:
-    if isinstance(guess, SolutionGuess):
-        earlier = _earlier(guess, phase)
-        if earlier is not None:
-            return _moved(earlier, phase, before)
     start, end = _span(phase, before, guess)
     times, given = _given(guess, phase.parameters)
     shares = (times - times[0]) / (times[-1] - times[0])
@@ -63,18 +75,40 @@ def _guess(phase: Phase, guess: Guess, before: float | None, index: int) -> Traj
     return trajectory
 
 
-def _earlier(guess: SolutionGuess, phase: Phase) -> Trajectory | None:
-    """The earlier result's trajectory of this phase."""
+def _earlier(guess: SolutionGuess, phase: Phase, *, only: bool) -> Trajectory | None:
+    """The earlier result's trajectory of this phase; the only phase takes an only one's."""
     found = [one for one in guess.phases if one.name == phase.name]
-    if not found and len(guess.phases) == 1:
+    if only and len(guess.phases) == 1:
         found = list(guess.phases)
-    if not found:
+    curves = found[0].curves if found else {}
+    groups = {name: Curves.from_dict(group.model_dump()) for name, group in curves.items()}
+    if not groups:
         return None
-    groups = {name: Curves.from_dict(group.model_dump()) for name, group in found[0].curves.items()}
-    states, controls = groups["states"], groups.get("controls")
-    start, end = float(states.breaks[0]), float(states.breaks[-1])
+    breaks = next(iter(groups.values())).breaks
+    start, end = float(breaks[0]), float(breaks[-1])
     empty = Curves([start, end], {})
-    return Trajectory(start, end, states, controls or empty, groups.get("rates", empty))
+    return Trajectory(
+        start, end, *(groups.get(name, empty) for name in ("states", "controls", "rates"))
+    )
+
+
+def _completed(trajectory: Trajectory, phase: Phase) -> Trajectory:
+    """With straight lines for what it does not know."""
+
+    def whole(names: Sequence[str], known: Curves) -> Curves:
+        missing = [name for name in names if trajectory.curve(name) is None]
+        times = known.breaks
+        shares = (times - times[0]) / ((times[-1] - times[0]) or 1.0)
+        rows = np.array([_line(phase, name, shares) for name in missing])
+        lines = straight_lines(missing, times, rows.reshape(len(missing), len(times)))
+        both = {**known, **lines}
+        return Curves(times, {name: curve.coefficients for name, curve in both.items()})
+
+    return replace(
+        trajectory,
+        states=whole(phase.states, trajectory.states),
+        controls=whole(phase.controls, trajectory.controls),
+    )
 
 
 def _moved(trajectory: Trajectory, phase: Phase, before: float | None) -> Trajectory:

@@ -45,6 +45,7 @@ def extract(transcribed: Transcribed, w: Array) -> list[Extracted]:
     for index, layout in enumerate(transcribed.layouts):
         strips = [_evaluate(transcribed, index, number, w) for number in range(len(layout.strips))]
         start, end = (_time(edge, w) for edge in (layout.start, layout.end))
+        end = max(start, end)  # an iterate may break the least duration
         trajectory, sums = _trajectory(layout, strips, start, end), _sums(layout, strips)
         result = _result(layout, strips, trajectory, sums)
         phases.append(Extracted(trajectory, result, sums))
@@ -163,10 +164,11 @@ def _curve_group(trajectory: Trajectory, names: Sequence[str]) -> CurveGroup:
 def _node_table(
     layout: PhaseLayout, strips: Sequence[_Nodes], trajectory: Trajectory
 ) -> Callable[[Sequence[str]], Group]:
-    """A function from names to their values at all nodes, knots that neighbours share once."""
+    """A function from names to their values at all nodes; at inner knots, of the later segment."""
     where, fraction = _node_places(layout)
-    order = np.argsort(where, kind="stable")
-    keep = order[~np.append(np.diff(where[order]) == 0, False)]
+    segment, place = where
+    order = np.lexsort((segment, segment + place))
+    keep = order[~np.append(np.diff((segment + place)[order]) == 0, False)]
     duration = trajectory.end - trajectory.start
     time = (trajectory.start + duration * fraction[keep]).tolist()
     columns: dict[str, Array] = {}
@@ -192,10 +194,10 @@ def _node_table(
 
 
 def _node_places(layout: PhaseLayout) -> tuple[Array, Array]:
-    """Each node's segment plus its place there, and its fraction of the phase; strip by strip."""
+    """Each node's segment and its place there (2, n), its fraction of the phase (n,); by strips."""
     where, fractions = [], []
     for strip in layout.strips:
         nodes = strip.transcription.fractions
-        where.append((strip.where[:, None] + nodes[None, :]).ravel())
+        where.append([np.repeat(strip.where, len(nodes)), np.tile(nodes, len(strip.where))])
         fractions.append(strip.fractions(nodes).ravel())
-    return np.concatenate(where), np.concatenate(fractions)
+    return np.concatenate(where, axis=1), np.concatenate(fractions)

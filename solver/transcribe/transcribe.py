@@ -63,7 +63,7 @@ def transcribe(model: Model, setting: Setting) -> Transcribed:
         )
         nodes.append(tuple(segment_nodes(layout, strip, own) for strip in layout.strips))
     knots = _knots(layouts, functions, len(joint.lifted) + 1)
-    groups = (*(group for phase in segments for group in phase), *knots, joint.group)
+    groups = (*(group for phase in segments for group in phase), *knots, *joint.groups)
     program = Program(variables, groups, joint.lifted)
     return Transcribed(program, tuple(layouts), tuple(nodes), tuple(segments), statics)
 

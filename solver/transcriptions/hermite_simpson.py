@@ -47,7 +47,8 @@ class HermiteSimpson(Transcription):
         )
         simpson = b.x - a.x - h / 6 * (fa + 4 * segment.derivative(m) + fb)
         defects = [m.x - hermite, simpson] if self.separated else [simpson]
-        return Collocation((a, m, b), ca.vertcat(*defects), self.weighted((a, m, b)))
+        hull = (2 * m.u - (a.u + b.u) / 2,) if self.quadratic else ()
+        return Collocation((a, m, b), ca.vertcat(*defects), self.weighted((a, m, b)), hull)
 
     def costates(self, multipliers: Array, states: int) -> tuple[Array, Array]:
         """Simpson's defect spans its segment: its multiplier belongs to the middle."""

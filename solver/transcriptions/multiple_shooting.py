@@ -44,7 +44,11 @@ class MultipleShooting(Transcription):
             points += [Point(halfway, middle.u, middle.z, middle.t), arrival]
             at = arrival
         points[-1] = nodes[-1]
-        return Collocation(tuple(points), nodes[-1].x - at.x, tuple(quadrature))
+        hull = tuple(
+            2 * middle.u - (start.u + end.u) / 2
+            for start, middle, end in zip(nodes[:-1:2], nodes[1::2], nodes[2::2], strict=True)
+        )
+        return Collocation(tuple(points), nodes[-1].x - at.x, tuple(quadrature), hull)
 
     def costates(self, multipliers: Array, states: int) -> tuple[Array, Array]:
         """The gap lies at the segment's end."""
@@ -65,7 +69,7 @@ class MultipleShooting(Transcription):
         """Quadratic on each step."""
         del h
         parts = np.stack([u[:, :-1:2], u[:, 1::2], u[:, 2::2]], axis=2)
-        return fit([-1.0, 0.0, 1.0], parts.reshape(-1, 3, u.shape[2]))
+        return fit([-1.0, 0.0, 1.0], parts.reshape(len(u) * self.pieces, 3, u.shape[2]))
 
 
 def _step(

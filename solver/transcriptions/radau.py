@@ -11,6 +11,7 @@ from solver.mesh.nodes import (
     legendre_radau,
     quadrature_weights,
 )
+from solver.mesh.polynomials import corners
 from solver.transcriptions.base import Array, Collocation, Node, Point, Segment, Transcription
 
 
@@ -39,6 +40,7 @@ class Radau(Transcription):
         self.weights = (0.0, *quadrature_weights(self._places))
         self._derivative = differentiation_matrix(self.fractions)[1:]
         self._start = interpolation_row(self._places, 0.0)
+        self._corners = corners(self._places)[:-1]
 
     @property
     def degree(self) -> int:
@@ -52,15 +54,17 @@ class Radau(Transcription):
     def collocate(self, segment: Segment) -> Collocation:
         """The state's slope is the derivative at the Radau points: D X = h F."""
         first, *inner = segment.points
-        u, z = (
-            ca.mtimes(ca.horzcat(*(getattr(point, name) for point in inner)), ca.DM(self._start))
-            for name in ("u", "z")
+        controls, unknowns = (
+            ca.horzcat(*(getattr(point, name) for point in inner)) for name in ("u", "z")
         )
+        u, z = (ca.mtimes(values, ca.DM(self._start)) for values in (controls, unknowns))
         points = (Point(first.x, u, z, first.t), *inner)
+        hull = ca.horzsplit(ca.mtimes(controls, ca.DM(self._corners.T)))
         x = ca.horzcat(first.x, *(point.x for point in inner))
         f = ca.horzcat(*(segment.derivative(point) for point in inner))
         slopes = ca.mtimes(x, ca.DM(self._derivative.T))
-        return Collocation(points, ca.vec(SX(slopes - segment.h * f)), self.weighted(points))
+        defects = ca.vec(SX(slopes - segment.h * f))
+        return Collocation(points, defects, self.weighted(points), tuple(hull))
 
     def costates(self, multipliers: Array, states: int) -> tuple[Array, Array]:
         """At the Radau points, multipliers over weights (Garg et al., 2010, equation 57)."""

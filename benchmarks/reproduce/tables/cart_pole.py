@@ -50,6 +50,8 @@ _SADDLE = (
     "the force does not act on the tip where sin q = 0, so its highest derivative is free there"
 )
 _WHY: dict[tuple[str, str], str] = {
+    ("torque_rate", "trapezoidal"): "the seed's mesh is unknown; on 47 segments ours is 4.639",
+    ("jerk", "DirCol5i"): "the seed's mesh is unknown",
     ("jerk", "trapezoidal"): "the printed 21.74 is this rule's own optimum on an unknown mesh",
     ("snap", "DirCol5i"): "the printed 3.854 belongs to the seed's mesh",
     ("snap", "Radau"): f"the seed's did not converge; {_SADDLE}",

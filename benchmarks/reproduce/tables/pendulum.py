@@ -56,7 +56,8 @@ WHY: dict[tuple[str, str, bool], str] = {
     ("trapezoidal", "torque_rate", True): "the seed's stopped at an infeasible point",
     ("trapezoidal", "jerk", True): "the printed 43.1 is another, worse minimum",
     ("trapezoidal", "snap", True): "the printed 1220 is another, worse minimum",
-    ("Chebyshev", "snap", True): "the printed 205 is another, worse minimum, and rings",
+    ("Chebyshev", "snap", True): "the printed 205 is another, worse minimum, and rings; "
+    "ours, with the torque bounded at few nodes, ends half a thousandth below the optimum",
 }
 
 
@@ -70,7 +71,7 @@ _REFINED: dict[tuple[str, str, bool], Patch] = {
 
 def _tolerance(method: str, objective: str, limited: bool) -> float:
     """Of the refined objective: smooth problems, those with switches, and methods of order 2."""
-    if (method, objective, limited) in _REFINED:
+    if objective == "snap" and limited and method in ("DirCol5i", "Chebyshev"):
         return 1e-3
     if objective == "snap" and not limited:
         return 1e-7

@@ -3,13 +3,12 @@
 import argparse
 import difflib
 import json
-import shutil
-from textwrap import shorten
+from collections.abc import Mapping
 from typing import Any
 
 from footfall import local
 from footfall.cli import codes
-from footfall.cli.output import show_json
+from footfall.cli.output import note, show_json
 from footfall.client import Client
 from footfall.errors import BadFile
 from footfall.summary import table
@@ -25,13 +24,34 @@ def examples(options: argparse.Namespace) -> int:
     if options.json:
         show_json(entries)
     else:
-        room = shutil.get_terminal_size().columns - 2 - max(len(entry["name"]) for entry in entries)
-        rows = [
-            [entry["name"], shorten(entry["description"], max(room, 40), placeholder=" ...")]
-            for entry in entries
-        ]
-        print(table(["example", "what it is"], rows, left=2))
+        rows = [[entry["name"], entry["title"], entry.get("uses", "")] for entry in entries]
+        head = ["example", "what it is", "what it shows"]
+        kept = 3 if any(row[2] for row in rows) else 2  # a service does not tell what it shows
+        print(table(head[:kept], [row[:kept] for row in rows], left=kept))
+        note("'footfall examples NAME' prints one, with its description and what is known of it")
     return codes.CONVERGED
+
+
+def uses(problem: Mapping[str, Any]) -> list[str]:
+    """What of the language a problem shows: systems, methods, and what not every problem has."""
+    phases = problem["phases"]
+    systems = dict.fromkeys(phase["system"]["kind"] for phase in phases)
+    own = [phase["method"] for phase in phases if phase.get("method")]
+    methods = dict.fromkeys(
+        method["kind"] for method in [problem.get("method") or {}, *own] if method
+    )
+    more = {
+        f"{len(phases)} phases": len(phases) > 1,
+        "static": problem.get("static"),
+        "residual": any(phase["system"].get("residual") for phase in phases),
+        "abs": problem.get("nonsmooth"),
+        "switches": (problem.get("refinement") or {}).get("switches"),
+        "stages": problem.get("stages"),
+        "multistart": problem.get("multistart", 1) > 1,
+    }
+    plain = ("ode", "hermite_simpson")  # as nearly everywhere
+    named = [kind for kind in [*systems, *methods] if kind not in plain]
+    return named + [word for word, there in more.items() if there]
 
 
 def _all(options: argparse.Namespace) -> list[dict[str, Any]]:
@@ -39,7 +59,12 @@ def _all(options: argparse.Namespace) -> list[dict[str, Any]]:
         with _client(options) as client:
             return client.examples()
     return [
-        {"name": name, "title": problem["name"], "description": problem.get("description", "")}
+        {
+            "name": name,
+            "title": problem["name"],
+            "description": problem.get("description", ""),
+            "uses": ", ".join(uses(problem)),
+        }
         for name, problem in local.examples().items()
     ]
 

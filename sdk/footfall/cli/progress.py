@@ -21,6 +21,7 @@ _STAGES = {
     "refine": "refining the mesh",
     "certify": "certifying",
 }
+_PARTS = ("stage ", "guess ", "split ")  # notes on what begins anew, worth a line of their own
 _EVERY = 1.0  # seconds between two plain lines about iterations
 
 
@@ -68,6 +69,7 @@ class _LiveTable:
 
     def __init__(self) -> None:
         self._meshes: list[dict[str, Any]] = []
+        self._part = ""
         self._stage = "waiting"
         self._iteration = ""
         self._spinner = Spinner("dots")
@@ -75,6 +77,8 @@ class _LiveTable:
     def __call__(self, event: Event) -> None:
         if event.type == "stage":
             self._stage = _stage(event.data)
+            if self._stage.startswith(_PARTS):
+                self._part = f"{self._stage}: "
         elif event.type == "state":
             self._stage = words(event.data["status"])
         elif event.type == "mesh":
@@ -84,7 +88,7 @@ class _LiveTable:
             self._iteration = f"iteration {data['iteration']}: {_iteration_words(data)}"
 
     def __rich__(self) -> Group:
-        self._spinner.update(text=f"{self._stage}  {self._iteration}")
+        self._spinner.update(text=f"{self._part}{self._stage}  {self._iteration}")
         return Group(*([self._table()] if self._meshes else []), self._spinner)
 
     def _table(self) -> Table:
@@ -104,7 +108,9 @@ class _LiveTable:
 
 
 def _stage(data: dict[str, Any]) -> str:
-    note = data.get("note")
+    note = data.get("note") or ""
+    if note.startswith(_PARTS):
+        return note
     return _STAGES.get(data["stage"], str(data["stage"])) + (f" {note}" if note else "")
 
 

@@ -42,13 +42,16 @@ def validate(options: argparse.Namespace) -> int:
     problem = read_json(options.file)
     if options.server:
         with jobs.client(options) as client:
-            issues = client.validate(problem)
+            issues, warnings = client.check(problem)
     else:
-        issues = local.validate(problem)
+        issues, warnings = local.check(problem)
     if options.json:
-        show_json({"valid": not issues, "issues": [issue_json(issue) for issue in issues]})
+        told = [issue_json(issue) for issue in issues]
+        show_json({"valid": not issues, "issues": told, "warnings": warnings})
     elif issues:
         note(explain(issues, problem, options.file))
     else:
         print(f"{options.file}: fine")
+        for text in warnings:
+            print(f"  warning: {text}")
     return codes.BAD_INPUT if issues else codes.CONVERGED

@@ -75,7 +75,8 @@ def _axes(figure: Figure, ticks: tuple[int, int]) -> Markup:
 def _series(figure: Figure, item: Series) -> Markup:
     dots = None
     if item.nodes is not None:
-        few = "nodes" if len(item.nodes[0]) <= 120 else "nodes many"
+        most = max(len(other.nodes[0]) for other in figure.series if other.nodes is not None)
+        few = "nodes" if most <= 120 else "nodes many"
         dots = el("path", class_=few, d=_dots(*_place(figure, *item.nodes)))
     return el(
         "g",

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -56,9 +55,11 @@ def trajectories(
 ) -> Iterator[Figure]:
     """The plots of all phases over one time axis, group by group, with the problem's bounds."""
     for group in groups(phases):
-        series = tracks(group, phases, problem)
-        while chunk := list(islice(series, TOGETHER)):
-            yield _trajectory(group, chunk, phases)
+        series = list(tracks(group, phases, problem))
+        plots = math.ceil(len(series) / TOGETHER)
+        for index in range(plots):  # as many in each as in the others
+            first, last = (len(series) * end // plots for end in (index, index + 1))
+            yield _trajectory(group, series[first:last], phases)
 
 
 def mesh_errors(refinement: Mapping[str, Any]) -> Figure | None:
@@ -118,10 +119,11 @@ def _trajectory(group: str, chunk: Sequence[Track], phases: Sequence[Phase]) -> 
     most = max((len(track.nodes[0]) for track in chunk if track.nodes), default=0)
     every = max(1, math.ceil(most / _MARKS))
     series, notes = [], [f"every {every}th node marked"] if every > 1 else []
+    far = [t.name for t in chunk if not all(_is_near(level.value, extent) for level in t.levels)]
+    if far:
+        notes.append(f"some bounds of {', '.join(far)} lie outside of the picture")
     for index, (track, line) in enumerate(zip(chunk, lines, strict=True)):
         near = tuple(level for level in track.levels if _is_near(level.value, extent))
-        if len(near) < len(track.levels):
-            notes.append(f"a bound of {track.name} lies outside of the picture")
         marked = (track.nodes[0][::every], track.nodes[1][::every]) if track.nodes else None
         series.append(Series(track.name, f"s{index}", *line, track.curve, marked, near))
     levels = [level.value for item in series for level in item.limits]

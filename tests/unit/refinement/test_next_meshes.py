@@ -37,6 +37,12 @@ def test_the_count_of_8_22(error: float, parts: int) -> None:
     assert only(meshed([error])).segments == parts
 
 
+def test_parts_that_are_asked_for_are_made_whatever_the_error() -> None:
+    mesh = only(meshed([1e-7, 1e-7, 1e-5], least=np.array([1, 3, 2])))
+    np.testing.assert_allclose(mesh.knots * 12, [0, 4, 4 + 4 / 3, 4 + 8 / 3, 8, 9, 10, 11, 12])
+    assert next_meshes([meshed([1e-7] * 3, least=np.ones(3, dtype=int))], ALONE) is None
+
+
 def test_little_room_goes_to_the_worst() -> None:
     mesh = only(meshed([1, 3, 2, 1.0]), Refinement(max_segments=5))
     np.testing.assert_allclose(mesh.knots, [0, 0.25, 0.375, 0.5, 0.75, 1])

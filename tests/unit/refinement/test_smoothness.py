@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from footfall.curves import Curves
 from schemas.results import CurveGroup, PhaseResult
-from solver.refinement.curves import decay, seams
+from solver.refinement.curves import bends, decay, seams
 from solver.refinement.hp import SMOOTH
 
 Array = NDArray[np.float64]
@@ -66,3 +66,25 @@ def test_smooth_controls_have_small_seams() -> None:
     assert np.all(seams(result(np.sin, lambda t: 3 + 2 * t, 3)) < 1e-12)
     assert np.all(seams(result(np.sin, np.cos, 6)) < 1e-3)
     np.testing.assert_array_equal(seams(result(np.sin, np.ones_like, 3)), 0)
+
+
+def test_a_kink_bends_a_control_by_its_slope_times_the_shorter_segment() -> None:
+    def kink(t: Array) -> Array:
+        return np.maximum(t - 1.0, 0.0)
+
+    apart = result(np.sin, kink, 3)
+    np.testing.assert_allclose(bends(apart), [0, 0.5, 0], atol=1e-12)
+    np.testing.assert_allclose(bends(apart), seams(apart), atol=1e-12)
+
+
+@pytest.mark.parametrize("group", ["controls", "rates"])
+def test_only_the_shorter_side_counts_for_a_bend(group: str) -> None:
+    """u = t to the knot at 0.1 and 0.1 after it, over [0, 1.1]: a range of 0.1."""
+    knots = np.array([0.0, 0.1, 1.1])
+    nodes = np.polynomial.chebyshev.chebpts1(2)
+    times = knots[:-1, None] + np.diff(knots)[:, None] * (nodes + 1) / 2
+    curves = Curves.through(["u"], knots, nodes, np.minimum(times, 0.1)[:, :, None])
+    groups = {group: CurveGroup.model_validate(curves.to_dict())}
+    phase = PhaseResult(name="phase", knots=knots.tolist(), groups={}, curves=groups)
+    np.testing.assert_allclose(bends(phase), [1.0])
+    np.testing.assert_allclose(seams(phase), [10.0])

@@ -4,6 +4,7 @@ from api.advice import warnings
 from schemas.corners import corners
 from schemas.problem import Problem
 from schemas.reading import read_problem
+from schemas.remarks import untied
 from tests.support.problems import hop
 
 
@@ -37,3 +38,12 @@ def test_advice_on_several_starts() -> None:
     assert "seeds 1 to 4" in line
     drawn = read_problem(hop() | {"multistart": 5, "guess": {"kind": "random", "seed": 3}})
     assert warnings(drawn, drawn.limits) == []
+
+
+def test_phases_that_nothing_ties_together_are_told() -> None:
+    assert list(untied(read_problem(hop()))) == []
+    loose = read_problem(hop() | {"linkages": hop()["linkages"][:1]})
+    (line,) = untied(loose)
+    assert line.startswith("/linkages: nothing ties 'landing'")
+    assert "link landing.initial.NAME to flight.final.NAME" in line
+    assert len(list(untied(read_problem(hop() | {"linkages": []})))) == 2

@@ -115,3 +115,12 @@ def test_later_stages_rest_on_earlier_ones() -> None:
     problem = read_problem(hop() | {"stages": stages})
     assert "a" in apply_stage(problem, 1).static
     assert only(stages[::-1]).pointer == "/stages/0/objective/minimize"
+
+
+def test_a_phase_that_is_not_there_is_not_made() -> None:
+    issue = only([{"phases": {"stanse": {"bounds": {"y": [0, 2]}}}}])
+    assert issue.pointer == "/stages/0/phases/stanse"
+    assert (issue.message, issue.hint) == ("there is no phase 'stanse'", "did you mean 'stance'?")
+    listed = only([{"phases": [{"bounds": {"y": [0, 2]}}]}])
+    assert listed.pointer == "/stages/0/phases"
+    assert '{"stance": {...}}' in listed.hint

@@ -123,7 +123,17 @@ def test_validate_for_programs(tmp_path: Path, capsys: Captured) -> None:
 
 def test_a_good_problem_is_fine(cart_pole: str, capsys: Captured) -> None:
     assert main(["validate", cart_pole]) == 0
-    assert "fine" in capsys.readouterr().out
+    assert capsys.readouterr().out == f"{cart_pole}: fine\n"
+
+
+def test_what_deserves_a_look_is_told_before_the_solve(tmp_path: Path, capsys: Captured) -> None:
+    problem = examples.load("interior_point") | {"linkages": []}
+    path = write(tmp_path, problem)
+    assert main(["validate", path]) == 0
+    assert "warning: /linkages: nothing ties" in capsys.readouterr().out
+    assert main(["validate", path, "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert (document["valid"], len(document["warnings"])) == (True, 1)
 
 
 @pytest.mark.parametrize(
@@ -171,7 +181,11 @@ def test_a_file_that_cannot_be_written_is_told(cart_pole: str, capsys: Captured)
 
 def test_examples_list_and_print(capsys: Captured) -> None:
     assert main(["examples"]) == 0
-    assert "cart_pole" in capsys.readouterr().out
+    listed = {line.split()[0]: line for line in capsys.readouterr().out.splitlines()}
+    assert set(examples.names()) < set(listed)
+    for word in ("closed_form", "3 phases", "stages"):
+        assert word in listed["slip_stl_str"]
+    assert listed["double_integrator"].endswith("switches")
     assert main(["examples", "cart_pole"]) == 0
     assert json.loads(capsys.readouterr().out) == examples.load("cart_pole")
     assert main(["examples", "cart_pol"]) == 2

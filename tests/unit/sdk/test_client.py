@@ -133,10 +133,12 @@ def test_validate_returns_the_issues() -> None:
     handler, seen = script(
         httpx.Response(422, content=json.dumps(issues), headers=kind),
         httpx.Response(200, json={"valid": True}),
+        httpx.Response(200, json={"valid": True, "warnings": ["/multistart: so"]}),
     )
     with client(handler) as service:
         assert [str(issue) for issue in service.validate({})] == ["/x: bad"]
         assert service.validate({}) == []
+        assert service.check({}) == ([], ["/multistart: so"])
     assert seen[0].url.params["validate_only"] == "true"
 
 

@@ -54,6 +54,13 @@ def test_phases_static_values_stages_and_minima_are_counted(solved: dict[str, An
     assert any(line.endswith("on the last mesh, strategy adaptive mu") for line in lines)
 
 
+def test_switches_are_told_with_their_times(solved: dict[str, Any]) -> None:
+    meshes = solved["mesh_refinement"]
+    split = [mesh | {"switches": [0.38196601125, 2.5]} for mesh in meshes["iterations"]]
+    text = summarize(solved | {"mesh_refinement": meshes | {"iterations": split}})
+    assert "  switches     controls switch at t = 0.381966, 2.5 s" in text.splitlines()
+
+
 def test_a_plain_result_says_no_more_than_before(solved: dict[str, Any]) -> None:
     plain = summarize(solved)
     for word in ("phase  ", "static", "stages", "minima", "strategy"):

@@ -9,10 +9,10 @@ import pytest
 
 from schemas.reading import read_problem
 from solver.mesh import Mesh
-from solver.prepare import prepare
 from solver.nlp.assembly import Nlp, assemble
 from solver.nlp.program import Program
 from solver.nlp.scaling import typical_scaling
+from solver.prepare import prepare
 from solver.transcribe import transcribe
 from tests.support.methods import variants
 from tests.support.problems import cart_pole

@@ -94,13 +94,35 @@ def test_an_exception_of_a_listener_is_not_swallowed() -> None:
         solved(block(), on_event=fail)
 
 
-def test_a_saturated_quadratic_control_fails_its_certificate() -> None:
+def test_a_polynomial_that_rings_fails_its_certificate() -> None:
     document = examples.load("double_integrator")
-    document["method"] = {"kind": "hermite_simpson", "segments": 20}
+    document["method"] = {"kind": "chebyshev_lobatto", "degree": 12}
+    document["refinement"] = None
     solution = solved(document)
     assert solution.status is SolutionStatus.CERTIFICATE_FAILED
     assert "control overshoot" in solution.message
     assert any("linear" in line for line in solution.advice)
+
+
+@pytest.mark.parametrize("segments", [9, 10])
+@pytest.mark.parametrize("kind", ["hermite_simpson", "radau", "multiple_shooting"])
+def test_a_saturated_control_keeps_its_bounds_between_the_nodes(kind: str, segments: int) -> None:
+    document = examples.load("double_integrator")
+    document["method"] = {"kind": kind, "segments": segments}
+    document["refinement"] = None
+    solution = solved(document)
+    assert solution.status is SolutionStatus.CONVERGED
+    assert 2 - 1e-6 < (solution.objective or 0) < 2.05
+
+
+def test_bends_of_the_control_are_refined_until_the_objective_is_steady() -> None:
+    """The dynamics are exact on any mesh: the mesh error sees nothing of the switch."""
+    document = examples.load("double_integrator")
+    document["method"] = {"kind": "hermite_simpson", "segments": 9, "control": "linear"}
+    coarse, fine = (solved(document | {"refinement": how}) for how in (None, {"tolerance": 1e-6}))
+    assert (coarse.objective or 0) > 2 + 1e-3
+    assert fine.objective == pytest.approx(2, rel=3e-6)
+    assert fine.status is SolutionStatus.CONVERGED
 
 
 def test_the_mesh_limit() -> None:

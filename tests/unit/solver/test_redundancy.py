@@ -8,10 +8,10 @@ import pytest
 import examples
 from schemas.reading import read_problem
 from schemas.results import SolutionStatus
-from solver.prepare import prepare
 from solver.nlp.redundancy import Redundancy, find_redundancy
 from solver.nlp.scaling import typical_scaling
 from solver.nlp.task import NlpTask
+from solver.prepare import prepare
 from solver.transcribe import transcribe
 from tests.unit.solver.problems import block, solved
 

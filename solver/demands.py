@@ -1,0 +1,98 @@
+"""What a mesh still lacks where its states are accurate: limits, integrals, bends of controls."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from schemas.problem import Problem
+from schemas.results import PhaseResult
+from solver.certificate.case import certificate_tolerance
+from solver.refinement.curves import bends
+from solver.refinement.merge import SEAM
+from solver.refinement.subdivide import Array, Counts
+from solver.solve_mesh import SolvedMesh
+
+_WITHIN = 0.1
+"""How far curves may leave their limits, in tolerances of the certificate."""
+
+_STEADY = 0.2
+"""How little of what integrals may be off an objective changes that has settled."""
+
+_GROWTH = 1
+"""Where the parts would add more segments than these times those there are, each gets two."""
+
+
+def demands(problem: Problem, solved: Sequence[SolvedMesh]) -> list[Counts]:
+    """The parts of each segment, (segments,) per phase, that the states' errors do not ask for.
+
+    Three things are measured that the mesh error does not see: how far the curves leave their
+    limits between the nodes, how far the method's own sums are from the integrals, and how much
+    the objective still changes while controls bend or jump inside of segments.
+    """
+    last, allowed = solved[-1], 0.5 * certificate_tolerance(problem)
+    limit = _WITHIN * problem.certificate.constraint_tolerance
+    wanted = [np.ones(len(errors), dtype=int) for errors in last.errors]
+    if last.largest_excess > limit:
+        wanted = _largest(problem, wanted, [excess / limit for excess in last.excess])
+    if last.integral_error > allowed:
+        wanted = _largest(problem, wanted, _shares(last.integral_errors, allowed))
+    if not _accurate(problem, last) or _steady(problem, solved, allowed):
+        return _movable(last, wanted)
+    bent = [(_bent(result) / SEAM) ** 2 for result in last.phases]
+    return _movable(last, _largest(problem, wanted, bent))
+
+
+def _accurate(problem: Problem, mesh: SolvedMesh) -> bool:
+    settings = problem.refinement
+    return settings is not None and mesh.max_error <= settings.tolerance
+
+
+def _steady(problem: Problem, solved: Sequence[SolvedMesh], allowed: float) -> bool:
+    """Whether the objective is the same on the last two accurate meshes."""
+    if len(solved) < 2 or not _accurate(problem, solved[-2]):
+        return False
+    change = abs(solved[-1].objective - solved[-2].objective)
+    return change <= _STEADY * allowed * (1 + abs(solved[-1].objective))
+
+
+def _largest(problem: Problem, wanted: Sequence[Counts], ratios: Sequence[Array]) -> list[Counts]:
+    """The larger of both: what ``ratios`` to the allowed ask for falls with the length squared."""
+    most = problem.refinement.max_subdivisions if problem.refinement else 1
+    return [
+        np.maximum(parts, np.where(ratio > 1, np.clip(np.ceil(np.sqrt(ratio)), 2, most), 1)).astype(
+            int
+        )
+        for parts, ratio in zip(wanted, map(_known, ratios), strict=True)
+    ]
+
+
+def _known(ratios: Array) -> Array:
+    return np.nan_to_num(ratios, nan=np.inf, posinf=np.inf)
+
+
+def _shares(errors: Sequence[Array], allowed: float) -> list[Array]:
+    """The errors of the segments that make up nearly all, over what each may have of the allowed.
+
+    Zero for the others, which together are off by half of the allowed or by a tenth of all.
+    """
+    flat = _known(np.concatenate(errors))
+    order = np.argsort(flat)
+    small = np.cumsum(flat[order]) <= max(0.5 * allowed, 0.1 * float(flat.sum()))
+    ratios = flat * (len(flat) / allowed)
+    ratios[order[small]] = 0.0
+    return np.split(ratios, np.cumsum([len(own) for own in errors])[:-1])
+
+
+def _bent(result: PhaseResult) -> Array:
+    """How far controls bend or jump at the knots of each segment, relative to their range."""
+    apart = np.concatenate([[0.0], bends(result), [0.0]])
+    return np.asarray(np.maximum(apart[:-1], apart[1:]))
+
+
+def _movable(mesh: SolvedMesh, wanted: Sequence[Counts]) -> list[Counts]:
+    """Nothing is cut where the method's mesh is rigid."""
+    rigid = [method.rigid for method in mesh.setting.transcriptions]
+    parts = [np.where(stiff, 1, own) for stiff, own in zip(rigid, wanted, strict=True)]
+    added = sum(int(np.sum(own - 1)) for own in parts)
+    most = 2 if added > _GROWTH * sum(len(own) for own in parts) else None
+    return [np.clip(own, None, most) for own in parts]
