@@ -152,6 +152,9 @@ def _given(error: ErrorDetails) -> str:
 def _kind(error: ErrorDetails, parts: list[Part], schema: Schema) -> Issue:
     options = list(schema.get("discriminator", {}).get("mapping", {}))
     for word in _INLINED:
+        if word == error["input"].get("kind") == "from_job":
+            hint = 'write {"from_job": "..."} with the id of the job, without a kind'
+            return Issue(pointer(*parts, "kind"), "a job is no kind of guess", hint)
         if word in (error["input"].get("kind"), *error["input"]):
             return Issue(pointer(*parts), f"{quoted(word)} is a name that is not known here", _EDGE)
     return _choice(error["input"].get("kind"), [*parts, "kind"], options)

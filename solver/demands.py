@@ -16,10 +16,10 @@ _WITHIN = 0.1
 """How far curves may leave their limits, in tolerances of the certificate."""
 
 _STEADY = 0.2
-"""How little of what integrals may be off an objective changes that has settled."""
+"""How little of what integrals may be off an objective still falls that has settled."""
 
-_GROWTH = 1
-"""Where the parts would add more segments than these times those there are, each gets two."""
+_FEW = 40
+"""Segments: where the parts would add more than these, and more than there are, each gets three."""
 
 
 def demands(problem: Problem, solved: Sequence[SolvedMesh]) -> list[Counts]:
@@ -48,18 +48,21 @@ def _accurate(problem: Problem, mesh: SolvedMesh) -> bool:
 
 
 def _steady(problem: Problem, solved: Sequence[SolvedMesh], allowed: float) -> bool:
-    """Whether the objective is the same on the last two accurate meshes."""
+    """Whether the last mesh, after an accurate one, did not lower the objective any more.
+
+    Shorter segments leave a control more freedom; where the objective rises, it is not that.
+    """
     if len(solved) < 2 or not _accurate(problem, solved[-2]):
         return False
-    change = abs(solved[-1].objective - solved[-2].objective)
-    return change <= _STEADY * allowed * (1 + abs(solved[-1].objective))
+    gain = solved[-2].objective - solved[-1].objective
+    return gain <= _STEADY * allowed * (1 + abs(solved[-1].objective))
 
 
 def _largest(problem: Problem, wanted: Sequence[Counts], ratios: Sequence[Array]) -> list[Counts]:
     """The larger of both: what ``ratios`` to the allowed ask for falls with the length squared."""
     most = problem.refinement.max_subdivisions if problem.refinement else 1
     return [
-        np.maximum(parts, np.where(ratio > 1, np.clip(np.ceil(np.sqrt(ratio)), 2, most), 1)).astype(
+        np.maximum(parts, np.where(ratio > 1, np.clip(np.ceil(np.sqrt(ratio)), 3, most), 1)).astype(
             int
         )
         for parts, ratio in zip(wanted, map(_known, ratios), strict=True)
@@ -94,5 +97,5 @@ def _movable(mesh: SolvedMesh, wanted: Sequence[Counts]) -> list[Counts]:
     rigid = [method.rigid for method in mesh.setting.transcriptions]
     parts = [np.where(stiff, 1, own) for stiff, own in zip(rigid, wanted, strict=True)]
     added = sum(int(np.sum(own - 1)) for own in parts)
-    most = 2 if added > _GROWTH * sum(len(own) for own in parts) else None
+    most = 3 if added > max(_FEW, sum(len(own) for own in parts)) else None
     return [np.clip(own, None, most) for own in parts]

@@ -124,6 +124,5 @@ def _static(name: str, spec: StaticSpec) -> Static:
     if spec.guess is not None:
         return Static(name, limits, resolve.scalar(spec.guess, {}))
     if math.isinf(limits.lower) or math.isinf(limits.upper):
-        nearest = min(max(1.0 if limits == OPEN else 0.0, limits.lower), limits.upper)
-        return Static(name, limits, nearest)
+        return Static(name, limits, limits.nearest(1.0 if limits == OPEN else 0.0))
     return Static(name, limits, (limits.lower + limits.upper) / 2)

@@ -24,6 +24,10 @@ class Interval(NamedTuple):
         """Whether a side of it limits anything."""
         return self.lower > -float("inf") or self.upper < float("inf")
 
+    def nearest(self, value: float) -> float:
+        """The value, or the limit that it passes."""
+        return min(max(value, self.lower), self.upper)
+
 
 OPEN = Interval(-float("inf"), float("inf"))
 

@@ -12,6 +12,7 @@ from schemas.results import PhaseResult
 Array = NDArray[np.float64]
 
 _FLOOR = 1e-14  # relative: below it is round-off
+_FLAT = 1e-5  # the same: a control of a smaller range rests, but for what the solver leaves
 _PLACES = np.linspace(-1.0, 1.0, 9)
 
 
@@ -88,10 +89,9 @@ def _apart(result: PhaseResult, reach: Callable[[Array, Array], tuple[Array, Arr
         ahead, back = reach(widths[left], widths[right])
         for curve in curves.values():
             values = curve.coefficients @ chebyshev.chebvander(_PLACES, curve.degree).T
-            span = float(np.ptp(values))
-            if span > _FLOOR * (1 + np.max(np.abs(values))):
-                for spread in (ahead, -back):
-                    worst = np.maximum(worst, _difference(curve, left, right, spread) / span)
+            span = max(float(np.ptp(values)), _FLAT * (1 + float(np.max(np.abs(values)))))
+            for spread in (ahead, -back):
+                worst = np.maximum(worst, _difference(curve, left, right, spread) / span)
     return worst
 
 

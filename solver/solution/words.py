@@ -52,6 +52,15 @@ _ADVICE = {
     ],
 }
 
+_CORNERED = (SolutionStatus.ACCEPTABLE, SolutionStatus.DIVERGED, SolutionStatus.ITERATION_LIMIT)
+_CORNER = (
+    "Some expression has corners (see the warnings), at which gradient-based solvers get stuck: "
+    'write "nonsmooth": {"abs": "slack"} or {"abs": {"tanh": 0.01}}.'
+)
+_AT_CORNERS = (
+    "Where an absolute value has its corner inside of a segment, the integral is not exact: "
+    'write "refinement": {"switches": true}, or lower its tolerance.'
+)
 _FOREVER = 1e4  # s: seldom meant where nothing limits the time
 _ON_BOUND, _MOSTLY = 1e-4, 0.5
 _OVERSHOOT = (
@@ -91,6 +100,11 @@ def advice(
     failed = {row.name for row in certificate.checks if row.judged and not row.passed}
     if status is SolutionStatus.CERTIFICATE_FAILED and "control overshoot" in failed:
         lines.append(_OVERSHOOT)
+    if status in _CORNERED and problem.nonsmooth is None and any(corners(problem)):
+        lines.insert(0, _CORNER)
+    switches = problem.refinement is not None and problem.refinement.switches
+    if status is SolutionStatus.CERTIFICATE_FAILED and problem.nonsmooth and not switches:
+        lines += [_AT_CORNERS] if "objective" in failed else []
     return lines
 
 

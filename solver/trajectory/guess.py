@@ -113,11 +113,9 @@ def _completed(trajectory: Trajectory, phase: Phase) -> Trajectory:
 
 def _moved(trajectory: Trajectory, phase: Phase, before: float | None) -> Trajectory:
     """The same motion, so that it starts where the phase can start."""
-    start = (
-        before if before is not None else _nearest(phase.start or Interval(0, 0), trajectory.start)
-    )
+    start = _first(phase, before, trajectory.start)
     duration = trajectory.end - trajectory.start
-    end = _nearest(phase.end, start + _nearest(phase.duration, duration))
+    end = phase.end.nearest(start + phase.duration.nearest(duration))
     if end <= start:
         end = start + duration
     scale = (end - start) / duration if duration > 0 else 1.0
@@ -130,9 +128,16 @@ def _moved(trajectory: Trajectory, phase: Phase, before: float | None) -> Trajec
     return Trajectory(start, end, *(stretched(group) for group in groups))
 
 
+def _first(phase: Phase, before: float | None, wanted: float) -> float:
+    """When a phase starts: where the one before it ends, or as near to ``wanted`` as it can."""
+    if before is not None:
+        return before
+    return wanted if phase.start is None else phase.start.nearest(wanted)
+
+
 def _span(phase: Phase, before: float | None, guess: Guess) -> tuple[float, float]:
     """A start and an end within their limits, a typical duration apart."""
-    first = before if before is not None else _nearest(phase.start or Interval(0.0, 0.0), 0.0)
+    first = _first(phase, before, 0.0)
     shortest = max(phase.end.lower - first, phase.duration.lower, 0.0)
     longest = max(min(phase.end.upper - first, phase.duration.upper), shortest)
     wanted = getattr(guess, "duration", None)
@@ -170,13 +175,9 @@ def _line(phase: Phase, name: str, shares: Array) -> Array:
     if initial.fixed and final.fixed:
         ends = initial.lower, final.lower
     elif initial.fixed:
-        ends = initial.lower, _nearest(final, initial.lower)
+        ends = initial.lower, final.nearest(initial.lower)
     elif final.fixed:
-        ends = _nearest(initial, final.lower), final.lower
+        ends = initial.nearest(final.lower), final.lower
     else:
-        ends = _nearest(initial, 0.0), _nearest(final, 0.0)
+        ends = initial.nearest(0.0), final.nearest(0.0)
     return np.asarray(ends[0] + (ends[1] - ends[0]) * shares)
-
-
-def _nearest(interval: Interval, value: float) -> float:
-    return min(max(value, interval.lower), interval.upper)

@@ -49,7 +49,7 @@ def noisy_values(
     """Values with noise, each within its limits; for static parameters."""
     draws = np.random.default_rng([seed, 1]).normal(size=len(values))
     return [
-        _within(value + spread * _scale(interval, value) * float(draw), interval)
+        interval.nearest(value + spread * _scale(interval, value) * float(draw))
         for value, interval, draw in zip(values, limits, draws, strict=True)
     ]
 
@@ -85,7 +85,3 @@ def _scale(limits: Interval, values: Array | float) -> float:
         return limits.upper - limits.lower
     sizes = [abs(limit) for limit in limits if math.isfinite(limit)]
     return max(1.0, *sizes, float(np.max(np.abs(values))))
-
-
-def _within(value: float, limits: Interval) -> float:
-    return min(max(value, limits.lower), limits.upper)

@@ -66,5 +66,6 @@ def guessed_integrals(
     ]
     constants = np.repeat(np.array(statics, dtype=float)[:, None], _SAMPLES, axis=1)
     integrands = functions.integrands.map(_SAMPLES)(*series, times[None, :], constants).full()
-    totals = np.trapezoid(integrands, times, axis=1)
+    with np.errstate(all="ignore"):  # poles on both sides of nothing
+        totals = np.trapezoid(integrands, times, axis=1)
     return np.where(np.isfinite(totals) & (totals != 0), totals, 1.0)

@@ -57,7 +57,7 @@ class _Lines:
             return f"mesh {data['mesh'] + 1}: {_mesh_words(data)}"
         if event.type == "state":
             said = "" if data["status"] == "failed" else data.get("message", "")  # an error says it
-            return f"job {words(data['status'])} {said}".rstrip()
+            return f"job {words(data['status'])}" + (f": {said}" if said else "")
         if event.type == "nlp_iteration" and time.monotonic() - self._last >= _EVERY:
             self._last = time.monotonic()
             return f"  iteration {data['iteration']}: {_iteration_words(data)}"

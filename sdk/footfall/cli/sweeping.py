@@ -100,7 +100,8 @@ def _deliver(ended: Sweep, options: argparse.Namespace) -> int:
 
 def in_words(ended: Sweep) -> str:
     """A line for each point, and for each distinct minimum of several guesses."""
-    places = list(dict.fromkeys(place for point in ended.points for place in point["values"]))
+    seen = dict.fromkeys(place for point in ended.points for place in point["values"])
+    places = [place for place in seen if place != "/multistart"]  # that is 1 at every point
     rows = [
         [
             str(point["index"]),
@@ -130,4 +131,6 @@ def _shown(value: Any) -> str:
     if isinstance(value, float):
         return f"{value:g}"
     text = "" if value is None else value if isinstance(value, str) else json.dumps(value)
+    if isinstance(value, dict) and value.get("kind") == "random":
+        text = f"random, seed {value.get('seed', 0)}"
     return text if len(text) <= 30 else f"{text[:27]}..."

@@ -1,7 +1,7 @@
 """What the comparisons rest on: the same equations for all, fair settings, a chain that is one."""
 
 from itertools import pairwise
-from math import cos, inf, pi, sin
+from math import cos, sin
 from typing import Any
 
 import numpy as np
@@ -13,40 +13,34 @@ from benchmarks.growth import Point, exponent
 from benchmarks.peers.measuring import Solved, Tool, _search, ladder
 from benchmarks.peers.problems import PROBLEMS, Problem
 from schemas.reading import read_problem
+from schemas.resolve import interval
 from schemas.systems import Ode
+from solver.lowering import lower
+from solver.numeric import dynamics
 
 
 def value(text: Any, names: dict[str, float]) -> float:
-    known = {"sin": sin, "cos": cos, "pi": pi} | names
-    return float(eval(str(text).replace("^", "**"), {"__builtins__": {}}, known))  # noqa: S307 - our own examples
+    return float(eval(str(text).replace("^", "**"), {"__builtins__": {}}, names))  # noqa: S307 - our own chain
 
 
 @pytest.mark.parametrize("name", PROBLEMS)
 def test_the_peers_solve_the_examples(name: str) -> None:
-    ours, theirs = examples.load(name), PROBLEMS[name]
-    (phase,) = ours["phases"]
-    system, random = phase["system"], np.random.default_rng(1)
+    ours, theirs = read_problem(examples.load(name)), PROBLEMS[name]
+    (phase,), (form,) = ours.phases, lower(ours)
+    rates, random = dynamics(form), np.random.default_rng(1)
     for _ in range(5):
-        x = random.uniform(-2, 2, len(system["states"])).tolist()
-        u = random.uniform(-2, 2, len(system["controls"])).tolist()
-        names = system["parameters"] | dict(zip(system["states"], x, strict=True))
-        names |= dict(zip(system["controls"], u, strict=True))
-        for define, text in system.get("define", {}).items():
-            names[define] = value(text, names)
-        rate = [value(system["derivatives"][state], names) for state in system["states"]]
-        np.testing.assert_allclose(theirs.rate(x, u, sin, cos), rate, rtol=1e-12, atol=1e-12)
-    assert theirs.duration == phase["time"]["final"]
-    for end, values in (("initial", theirs.start), ("final", theirs.end)):
-        assert [value(phase[end][state], {}) for state in system["states"]] == list(values)
-    bounds = [phase.get("bounds", {}).get(n, [-inf, inf]) for n in names_of(system)]
-    assert [tuple(pair) for pair in bounds] == list(theirs.bounds)
-    assert theirs.optimum == ours["known"][0]["value"]
-    (integrand,) = phase["integrals"].values()
-    assert integrand.replace(" ", "") == "+".join(f"{u}^2" for u in system["controls"])
-
-
-def names_of(system: dict[str, Any]) -> list[str]:
-    return [*system["states"], *system["controls"]]
+        x = random.uniform(-2, 2, len(form.states))
+        u = random.uniform(-2, 2, len(form.controls))
+        own = theirs.rate(x.tolist(), u.tolist(), sin, cos)
+        np.testing.assert_allclose(own, rates(0.0, x, u), rtol=1e-12, atol=1e-12)
+    assert theirs.duration == interval(phase.time.final, {})[0]
+    for given, values in ((phase.initial, theirs.start), (phase.final, theirs.end)):
+        assert [interval(given[state], {})[0] for state in form.states] == list(values)
+    names = [*form.states, *form.controls]
+    assert [interval(phase.bounds.get(n), {}) for n in names] == list(theirs.bounds)
+    assert theirs.optimum == ours.known[0].value
+    (integrand,) = phase.integrals.values()
+    assert str(integrand).replace(" ", "") == "+".join(f"{u}^2" for u in form.controls)
 
 
 def test_a_ladder_grows_by_a_fifth() -> None:

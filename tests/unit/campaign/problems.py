@@ -61,7 +61,7 @@ class Recorder:
         """One problem, whatever its stages and guesses."""
         self.problems.append(problem)
         self.deadlines.append(run.deadline - time.monotonic())
-        return solve_once(problem, run, lambda _: None).solution
+        return solve_once(problem, run, lambda _: None)
 
     @property
     def notes(self) -> list[str]:

@@ -159,6 +159,7 @@ def test_data_that_no_json_has() -> None:
             "write it out",
         ),
         ("guess", {"from_job": "x"}, "/guess", "'from_job' is", "write it out"),
+        ("guess", {"kind": "from_job", "id": "x"}, "/guess/kind", "no kind", '{"from_job": "'),
         (f"{PHASE} guess", {"from_job": "x"}, "/phases/0/guess", "'from_job' is", "write it out"),
         (f"{PHASE} guess", {"kind": "linea"}, "/phases/0/guess/kind", "none of", "'linear'"),
         (f"{PHASE} method", {"kind": "radau", "x": 1}, "/phases/0/method/x", "unknown field", ""),

@@ -77,7 +77,9 @@ def test_what_an_earlier_result_lacks_takes_the_linear_guess() -> None:
     wider = move(system=system, initial={"q": 0, "w": 2}, final={"w": 3, "u": 5})
     (found,) = trajectories(problem(wider, guess=guess))
     np.testing.assert_allclose(
-        found.sample(["q", "w", "u"], THIRDS), [[0, 0.5, 1], [2, 2.5, 3], [5, 5, 5]], atol=1e-6
+        found.sample(["q", "w", "u"], THIRDS),
+        np.array([[0, 0.5, 1], [2, 2.5, 3], [5, 5, 5.0]]),
+        atol=1e-6,
     )
 
 
@@ -86,7 +88,7 @@ def test_a_guess_without_states() -> None:
     del guess["phases"][0]["curves"]["states"]
     (found,) = trajectories(problem(move(), guess=guess))
     np.testing.assert_allclose(
-        found.sample(["q", "u"], THIRDS), [[0, 0.5, 1], [6, 0, -6]], atol=1e-6
+        found.sample(["q", "u"], THIRDS), np.array([[0, 0.5, 1], [6, 0, -6.0]]), atol=1e-6
     )
 
 

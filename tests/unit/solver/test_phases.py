@@ -128,3 +128,12 @@ def test_guesses_end_in_time_for_the_phases_after_them() -> None:
     assert spans[-1][1] == 0.5
     assert all(start < end for start, end in spans)
     assert [end for _, end in spans[:-1]] == [start for start, _ in spans[1:]]
+
+
+def test_an_integral_with_poles_of_both_signs_is_no_crash() -> None:
+    """At its guess, where u is zero at one node and the pole's other side at the next."""
+    guess = {"kind": "points", "time": [0, 0.495, 0.5, 1], "values": {"u": [1, 1, 0, 0]}}
+    phase = move(integrals={"effort": "1/u - 1/(1 - u)"}, guess=guess)
+    with pytest.raises(InvalidModel) as caught:
+        solved(problem(phase))
+    assert caught.value.issues[0].pointer == "/phases/0/integrals/effort"
