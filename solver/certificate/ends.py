@@ -28,10 +28,10 @@ def time(case: Case) -> Check | None:
     A later phase starts when the one before it ends. None can end before it starts: curves whose
     breaks decrease are not read.
     """
-    befores = (None, *case.phases[:-1])
+    previous = (None, *case.phases[:-1])
     findings = [
         finding
-        for phase, before in zip(case.phases, befores, strict=True)
+        for phase, before in zip(case.phases, previous, strict=True)
         for finding in (_starts(phase, before), *_ends(phase))
     ]
     return judge("time", findings, case.constraint_tolerance)
