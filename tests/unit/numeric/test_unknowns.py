@@ -99,3 +99,12 @@ def test_unknowns_that_are_not_asked_for_are_not_solved_for() -> None:
     assert len(named(system, ["x"]).solves) == 0
     assert len(named(system, ["a"]).solves) == 1
     assert len(named(system, ["b"]).solves) == 2
+
+
+def test_a_cubic_is_solved_from_anywhere() -> None:
+    """Its slope at one is four times that at zero: a chord over so long a way leads astray."""
+    wide = np.linspace(-1e3, 1e3, 2001)
+    group = unknowns(["a"], "a^3 + a - 5*x + sin(x)")
+    system = form({"x": "1"}, unknowns=(group,))
+    (a,) = along(system, [parse("a")])(0 * wide, wide[None], np.empty((0, len(wide))))
+    assert a**3 + a == pytest.approx(5 * wide - np.sin(wide), rel=1e-9, abs=1e-9)
