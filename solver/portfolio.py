@@ -5,12 +5,15 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from schemas.problem import SolverSettings
 from solver.backends import DEFAULT, FEASIBLE, Backend, NlpStatus, Outcome, Strategy, Watch
 from solver.backends.plugin import iterate_at
-from solver.nlp.elastic import elastic
+from solver.nlp.elastic import Elastic, elastic
 from solver.nlp.task import NlpTask
+
+Mask = NDArray[np.bool_]
 
 STRATEGIES = (
     Strategy("adaptive barrier", adaptive=True),
@@ -19,6 +22,7 @@ STRATEGIES = (
 """What is tried after the default, where the backend knows it; the elastic start comes last."""
 
 ELASTIC = "elastic start"
+LIMITS = "elastic limits"
 
 _WORTH_ANOTHER = (
     NlpStatus.INFEASIBLE,
@@ -53,6 +57,9 @@ class Portfolio:
         A new watch, for the elastic solve before the last attempt.
     announce
         Hears of each attempt before it begins.
+    limits
+        Rows (m,) and variables (n,) whose limits may give way on the way to a start from which
+        the dynamics hold; None to let all rows give way at once only.
     """
 
     backend: Backend
@@ -60,6 +67,7 @@ class Portfolio:
     attempt: Callable[[NlpTask, Strategy], Outcome]
     watch: Callable[[], Watch]
     announce: Callable[[str], None]
+    limits: tuple[Mask, Mask] | None = None
 
     def solve(self, task: NlpTask, first: Outcome) -> Won:
         """Try the strategies in turn until one ends at an optimum.
@@ -86,15 +94,21 @@ class Portfolio:
         for strategy in STRATEGIES:
             if self.backend.offers(strategy):
                 yield strategy.name, partial(self.attempt, task, strategy)
-        if not self.backend.refusal(_all_rows(task)):
-            yield ELASTIC, partial(self._from_elastic, task)
+        every = np.ones(len(task.row_lower), dtype=bool)
+        ways = [(ELASTIC, (every, np.zeros(len(task.start), dtype=bool)))]
+        if self.limits is not None:
+            ways.append((LIMITS, self.limits))
+        for name, (rows, bounds) in ways:
+            relaxed = elastic(task, rows, bounds)
+            if not self.backend.refusal(relaxed.task):
+                yield name, partial(self._from_elastic, task, relaxed)
 
-    def _from_elastic(self, task: NlpTask) -> Outcome:
+    def _from_elastic(self, task: NlpTask, relaxed: Elastic) -> Outcome:
         """First the point that violates the least; where that is nothing, the optimum from it."""
         watch = self.watch()
         silent = Watch(watch.deadline, watch.should_stop, watch.report)
-        near = self.backend.solve(_all_rows(task), self.settings, silent, warm=False)
-        point = np.clip(near.point.z[: len(task.start)], task.lower, task.upper)
+        near = self.backend.solve(relaxed.task, self.settings, silent, warm=False)
+        point = np.clip(relaxed.point(near.point.z), task.lower, task.upper)
         reached, over = iterate_at(task, point), near.status in _OVER
         if over or reached.violation > FEASIBLE:
             status = near.status if over else NlpStatus.INFEASIBLE
@@ -105,12 +119,6 @@ class Portfolio:
             iterations=near.iterations + outcome.iterations,
             seconds=near.seconds + outcome.seconds,
         )
-
-
-def _all_rows(task: NlpTask) -> NlpTask:
-    """The task with all rows elastic, its bounds as they are."""
-    every = np.ones(len(task.row_lower), dtype=bool)
-    return elastic(task, every, np.zeros(len(task.start), dtype=bool)).task
 
 
 def _better(one: Outcome, other: Outcome) -> bool:

@@ -35,6 +35,7 @@ from solver.transcribe import (
     transcribe,
     with_costates,
 )
+from solver.unmet import limits_of
 
 Array = NDArray[np.float64]
 
@@ -231,6 +232,7 @@ def solve_mesh(
             lambda note: run.on_event(StageStarted(stage="solve", note=note)),
             warm=start.warm,
             once=start.spare,
+            limits=limits_of(built.transcribed.program) if problem.solver.portfolio else None,
         )
         findings = built.findings(won.outcome, run, start.number)
     with run.stage("refine"):

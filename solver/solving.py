@@ -8,7 +8,7 @@ from schemas.problem import SolverSettings
 from solver.backends import DEFAULT, NlpStatus, Outcome, Strategy, Watch, make_backend
 from solver.nlp.stationarity import stationary
 from solver.nlp.task import NlpTask
-from solver.portfolio import Portfolio, Won
+from solver.portfolio import Mask, Portfolio, Won
 
 _OVER = (NlpStatus.OPTIMAL, NlpStatus.STOPPED, NlpStatus.TIME_LIMIT)
 _HASTE = 500  # iterations
@@ -23,13 +23,15 @@ def solve_task(
     *,
     warm: bool,
     once: bool = False,
+    limits: tuple[Mask, Mask] | None = None,
 ) -> Won:
     """Solve; from a warm start first where there is one, and cold again where that fails.
 
     ``once``: not again, and not for long; there is an optimum that will do.
 
-    With ``settings.portfolio`` other strategies are tried after a failure. ``announce`` hears of
-    every attempt but the first.
+    With ``settings.portfolio`` other strategies are tried after a failure; ``limits`` are then the
+    rows and variables that are no part of the dynamics. ``announce`` hears of every attempt but
+    the first.
 
     Raises
     ------
@@ -55,7 +57,8 @@ def solve_task(
             outcome = again
     if not settings.portfolio:
         return Won(outcome)
-    return Portfolio(backend, settings, attempt, watch, announce).solve(task, outcome)
+    portfolio = Portfolio(backend, settings, attempt, watch, announce, limits)
+    return portfolio.solve(task, outcome)
 
 
 def _judged(task: NlpTask, outcome: Outcome, tolerance: float) -> Outcome:

@@ -35,10 +35,8 @@ def unmet(
     that has no solution, all rows do, within the bounds. Empty where all can be met, so
     that another guess may do; None where it was not found out, as at the deadline.
     """
-    labels = program.labels()
-    motion = np.array([label.name.split(" ")[0] in _MOTION for label in labels], dtype=bool)
-    later, none = ~_at_start(program), np.zeros(len(task.start), dtype=bool)
-    for rows, bounds in ((~motion, later), (np.ones_like(motion), none)):
+    limits, every = limits_of(program), np.ones(program.rows, dtype=bool)
+    for rows, bounds in (limits, (every, np.zeros(len(task.start), dtype=bool))):
         relaxed = elastic(task, rows, bounds)
         if backend.refusal(relaxed.task):
             return None
@@ -49,6 +47,13 @@ def unmet(
         if outcome.status in (NlpStatus.STOPPED, NlpStatus.TIME_LIMIT):
             return None
     return None
+
+
+def limits_of(program: Program) -> tuple[Mask, Mask]:
+    """Rows (m,) and variables (n,) whose limits are no part of the dynamics, nor of the start."""
+    labels = program.labels()
+    motion = np.array([label.name.split(" ")[0] in _MOTION for label in labels], dtype=bool)
+    return ~motion, ~_at_start(program)
 
 
 def _at_start(program: Program) -> Mask:
