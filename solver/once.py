@@ -6,13 +6,11 @@ from schemas.problem import Problem
 from schemas.results import Certificate, Solution, finite
 from solver.certificate import CHECKS, JUDGED, certify
 from solver.lowering import smoothed
-from solver.meshes import solve_meshes
+from solver.meshes import SolvedMesh, solve_meshes, solve_switched
 from solver.prepare import prepare
 from solver.run import Run
 from solver.solution.choose import choose
 from solver.solution.conclude import conclude, snapshot
-from solver.solve_mesh import SolvedMesh
-from solver.switched import solve_switched
 
 Listen = Callable[[Solution], None]
 

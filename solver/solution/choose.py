@@ -4,13 +4,7 @@ from collections.abc import Sequence
 
 from schemas.problem import Problem
 from solver.backends import NlpStatus
-from solver.solve_mesh import SolvedMesh
-
-
-def settled(problem: Problem, mesh: SolvedMesh) -> bool:
-    """Whether a mesh is optimal and, where that was asked for, fine enough."""
-    settings = problem.refinement
-    return mesh.optimal and (settings is None or mesh.max_error <= settings.tolerance)
+from solver.meshes import SolvedMesh, settled
 
 
 def choose(problem: Problem, solved: Sequence[SolvedMesh]) -> SolvedMesh:

@@ -22,11 +22,11 @@ from schemas.results import (
     finite,
 )
 from solver.backends import NlpStatus
+from solver.meshes import SolvedMesh, settled
 from solver.nlp.residuals import RowResidual
 from solver.run import Run
-from solver.solution.choose import choose, settled
+from solver.solution.choose import choose
 from solver.solution.words import advice, message, warnings
-from solver.solve_mesh import SolvedMesh
 
 _STATUS = {
     NlpStatus.ACCEPTABLE: SolutionStatus.ACCEPTABLE,

@@ -9,9 +9,9 @@ from schemas.corners import corners
 from schemas.problem import Problem
 from schemas.remarks import untied
 from schemas.results import Certificate, PhaseResult, Residual, SolutionStatus
+from solver.meshes import SolvedMesh
 from solver.nlp.redundancy import Redundancy
 from solver.solution.choose import choose
-from solver.solve_mesh import SolvedMesh
 
 _MESSAGES = {
     SolutionStatus.CONVERGED: "Optimal (a local minimum), within the mesh tolerance, certified.",

@@ -12,7 +12,7 @@ from solver.nlp.elastic import elastic
 from solver.nlp.health import scale_warnings, unused_warnings
 from solver.nlp.invalid import find_invalid
 from solver.nlp.residuals import RowResidual
-from solver.unmet import unmet
+from solver.solving.unmet import unmet
 from tests.backends.tasks import INFEASIBLE, after, posed, run, watched
 from tests.unit.solver.problems import block
 

@@ -8,7 +8,7 @@ import pytest
 from schemas.problem import SolverSettings
 from solver.backends import Iterate, NlpStatus, Outcome, Strategy, Watch, make_backend
 from solver.nlp.task import NlpTask
-from solver.portfolio import ELASTIC, Portfolio, Won
+from solver.solving.portfolio import ELASTIC, Portfolio, Won
 from tests.backends.tasks import INFEASIBLE, after, example, posed, run, watched
 from tests.unit.solver.problems import block
 

@@ -8,7 +8,7 @@ from schemas.problem import SolverSettings
 from solver.backends import DEFAULT, NlpStatus, Outcome, Strategy, Watch, make_backend
 from solver.nlp.stationarity import stationary
 from solver.nlp.task import NlpTask
-from solver.portfolio import Mask, Portfolio, Won
+from solver.solving.portfolio import Mask, Portfolio, Won
 
 _OVER = (NlpStatus.OPTIMAL, NlpStatus.STOPPED, NlpStatus.TIME_LIMIT)
 _HASTE = 500  # iterations

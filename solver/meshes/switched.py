@@ -7,12 +7,12 @@ import numpy as np
 
 from schemas.events import StageStarted
 from schemas.problem import Problem
-from solver.meshes import Publish, solve_meshes
+from solver.meshes.sequence import Publish, solve_meshes
+from solver.meshes.settled import settled
+from solver.meshes.solve_mesh import SolvedMesh
 from solver.model import Model
 from solver.prepare import prepare
 from solver.run import Run
-from solver.solution.choose import settled
-from solver.solve_mesh import SolvedMesh
 from solver.switches.join import by_phase, guesses, join, whole
 from solver.switches.propose import ROUNDS, propose
 from solver.switches.split import Cut, Plan, split

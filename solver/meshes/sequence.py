@@ -7,13 +7,13 @@ from schemas.events import MeshSolved
 from schemas.problem import Problem
 from schemas.results import finite
 from solver.backends import NlpStatus
-from solver.demands import demands
+from solver.meshes.demands import demands
+from solver.meshes.solve_mesh import SolvedMesh, Start, solve_mesh
 from solver.model import Model
 from solver.refinement.curves import decay, seams
 from solver.refinement.meshed import Meshed
 from solver.refinement.refine import next_meshes
 from solver.run import Run
-from solver.solve_mesh import SolvedMesh, Start, solve_mesh
 from solver.transcribe import Setting
 
 _LOST = 0.1

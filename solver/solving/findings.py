@@ -10,7 +10,7 @@ from solver.nlp.program import Program
 from solver.nlp.residuals import RowResidual
 from solver.nlp.scaling import Scaling
 from solver.nlp.task import NlpTask
-from solver.unmet import unmet
+from solver.solving.unmet import unmet
 
 _ELSEWHERE = (
     "From elsewhere all constraints can be met: try another guess, 'multistart', or "

@@ -7,10 +7,10 @@ import numpy as np
 from schemas.problem import Problem
 from schemas.results import PhaseResult
 from solver.certificate.case import certificate_tolerance
+from solver.meshes.solve_mesh import SolvedMesh
 from solver.refinement.curves import bends
 from solver.refinement.merge import SEAM
 from solver.refinement.subdivide import Array, Counts
-from solver.solve_mesh import SolvedMesh
 
 _WITHIN = 0.1
 """How far curves may leave their limits, in tolerances of the certificate."""

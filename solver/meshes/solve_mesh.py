@@ -12,7 +12,6 @@ from schemas.problem import Problem
 from schemas.results import PhaseResult
 from solver.backends import NlpStatus, Outcome, Watch
 from solver.diagnosis import check_start
-from solver.findings import Findings, find
 from solver.lowering.used import used_integrals
 from solver.model import Model
 from solver.nlp.health import scale_warnings, unused_warnings
@@ -20,12 +19,11 @@ from solver.nlp.redundancy import Redundancy, find_redundancy
 from solver.nlp.residuals import RowResidual, ranked_residuals
 from solver.nlp.scaling import Scaling, typical_scaling
 from solver.nlp.task import NlpTask
-from solver.portfolio import Won
 from solver.refinement.error import segment_errors
 from solver.refinement.excess import excess
 from solver.refinement.integrals import integral_errors
 from solver.run import Run
-from solver.solving import solve_task
+from solver.solving import Findings, Won, find, limits_of, solve_task
 from solver.trajectory import Trajectory
 from solver.transcribe import (
     Extracted,
@@ -35,7 +33,6 @@ from solver.transcribe import (
     transcribe,
     with_costates,
 )
-from solver.unmet import limits_of
 
 Array = NDArray[np.float64]
 
