@@ -52,10 +52,10 @@ _SADDLE = (
 _WHY: dict[tuple[str, str], str] = {
     ("torque_rate", "trapezoidal"): "the seed's mesh is unknown; on 47 segments ours is 4.639",
     ("jerk", "DirCol5i"): "the seed's mesh is unknown",
-    ("jerk", "trapezoidal"): "the printed 21.74 is this rule's own optimum on an unknown mesh",
-    ("snap", "DirCol5i"): "the printed 3.854 belongs to the seed's mesh",
+    ("jerk", "trapezoidal"): "the seed's mesh is unknown, and it calls its 21.74 sub-optimal",
+    ("snap", "DirCol5i"): "the seed's mesh is unknown",
     ("snap", "Radau"): f"the seed's did not converge; {_SADDLE}",
-    ("snap", "trapezoidal"): f"the printed 10.22 is another, worse minimum; {_SADDLE}",
+    ("snap", "trapezoidal"): f"the seed calls its 10.22 far sub-optimal; {_SADDLE}",
 }
 _ONE_MESH: Patch = {
     "method": {"kind": "dircol5i", "segments": 100},

@@ -38,7 +38,8 @@ _TABLE_8_2 = {
     "Chebyshev": ("9.22 ringing", "12.8 5.51", "8.28 ringing", "27.3 ringing", "205 ringing"),
 }
 _SPLINE = (
-    "DirCol5i's value on twelve segments depends on where the torque is bounded: ours, at knots"
+    "the seed does not say where the torque is bounded; ours, at the knots, has another value "
+    "on twelve segments"
 )
 WHY: dict[tuple[str, str, bool], str] = {
     ("DirCol5i", "snap", False): "the printed 0.0377 is not optimal: the cubic has no snap at all",
@@ -46,17 +47,15 @@ WHY: dict[tuple[str, str, bool], str] = {
     ("DirCol5i", "jerk", True): _SPLINE,
     ("DirCol5i", "snap", True): _SPLINE + ". The snap jumps where the torque leaves its limit, "
     "and a cubic control is of first order there: a thousandth above on 100 segments",
-    ("Radau", "acceleration", False): "the seed's diverged between its points; a chain of "
-    "integrators bounds every node",
+    ("Radau", "acceleration", False): "the seed's diverged between its points",
     ("Radau", "jerk", False): "the seed's diverged between its points",
-    ("Radau", "acceleration", True): "the printed 8.06 lies below any feasible value: the torque "
-    "passes its limits between the points",
+    ("Radau", "acceleration", True): "the printed 8.06 lies below any feasible value",
     ("Radau", "jerk", True): "the printed 27.2 lies below any feasible value",
     ("Radau", "snap", True): "the seed's diverged between its points",
     ("trapezoidal", "torque_rate", True): "the seed's stopped at an infeasible point",
-    ("trapezoidal", "jerk", True): "the printed 43.1 is another, worse minimum",
-    ("trapezoidal", "snap", True): "the printed 1220 is another, worse minimum",
-    ("Chebyshev", "snap", True): "the printed 205 is another, worse minimum, and rings; "
+    ("trapezoidal", "jerk", True): "the printed 43.1 is far above, another motion it seems",
+    ("trapezoidal", "snap", True): "the printed 1220 is far above; the seed calls it sub-optimal",
+    ("Chebyshev", "snap", True): "the printed 205 is far above, and rings; "
     "ours, with the torque bounded at few nodes, ends half a thousandth below the optimum",
 }
 

@@ -58,7 +58,8 @@ SLIP = Table(
     "hopper at an ice patch",
     "Any motion, then the least actuation squared, then the least work: each step starts from "
     "the one before. The seed's sums over ten nodes are reproduced beside the integrals, which "
-    "do not change with the mesh. `str` is the case that its code ships.",
+    "do not change with the mesh. `str` is the case that its code ships.\n\n"
+    "![The four sequences, in the colours of the seed](images/slip.svg)",
     (
         *(
             Row(
