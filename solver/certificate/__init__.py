@@ -1,7 +1,7 @@
 """The certificate: an independent judgement of a finished result.
 
-It shares with what it judges the problem's typed text and the published curves, and nothing
-else: numpy instead of casadi, scipy's DOP853 instead of a collocation, an adaptive quadrature
+It shares with what it judges the published curves and the problem's typed trees, lowered to
+first-order form (``solver.lowering``, decision 009), and nothing else: numpy instead of casadi, scipy's DOP853 instead of a collocation, an adaptive quadrature
 instead of the method's weights.
 """
 
