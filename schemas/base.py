@@ -26,7 +26,8 @@ Identifier = Annotated[str, StringConstraints(pattern=r"^[A-Za-z_][A-Za-z0-9_]{0
 Series = Annotated[
     str,
     StringConstraints(
-        pattern=r"^(?:d{1,4}\([A-Za-z_][A-Za-z0-9_]{0,63}\)|[A-Za-z_][A-Za-z0-9_]{0,63})$"
+        pattern=r"^(?:[A-Za-z_][A-Za-z0-9_]{0,63}\.){0,3}"
+        r"(?:d{1,4}\([A-Za-z_][A-Za-z0-9_]{0,63}\)|[A-Za-z_][A-Za-z0-9_]{0,63})$"
     ),
 ]
 """What varies along a phase: a state, a control, or a derivative of one such as ``d(x)``."""

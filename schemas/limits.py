@@ -21,6 +21,10 @@ class ModelLimits:
     integrals: int = 100
     constraints: int = 200
     """In a phase's ``path``, and as many in its ``boundary``."""
+    bodies: int = 64
+    """Of a mechanism; as many joints, motors, springs, loops, forces and torques."""
+    contacts: int = 64
+    """Of a mechanism; as many points, surfaces, shapes and pairs."""
     segments: int = 20_000
     """Of any mesh; the first mesh has at most a quarter of them."""
     nodes: int = 20_000

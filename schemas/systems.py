@@ -13,6 +13,7 @@ from pydantic_core import PydanticCustomError
 from schemas.base import AlsoNamed, Identifier, Posted
 from schemas.expressions import Expression
 from schemas.limits import MODEL_LIMITS
+from schemas.mechanisms import Mechanism
 from schemas.pointers import Part
 from schemas.values import Scalar
 
@@ -132,7 +133,7 @@ class ClosedForm(Posted):
 
 
 System = Annotated[
-    Ode | SecondOrder | ClosedForm,
+    Ode | SecondOrder | ClosedForm | Mechanism,
     Field(discriminator="kind"),
     AlsoNamed(
         (("kind", "=library"), ("name", "string"), ("parameters", "object")),
@@ -140,4 +141,4 @@ System = Annotated[
         optional=("parameters",),
     ),
 ]
-SYSTEMS: tuple[type[Posted], ...] = (Ode, SecondOrder, ClosedForm)
+SYSTEMS: tuple[type[Posted], ...] = (Ode, SecondOrder, ClosedForm, Mechanism)

@@ -1,0 +1,128 @@
+"""A planar mechanism as data: bodies, joints, what drives it, what it may touch."""
+
+from collections.abc import Iterator
+from functools import cached_property
+from typing import Literal
+
+from pydantic import Field
+
+from schemas.base import Identifier, Posted, Series
+from schemas.expressions import Expression, derivative
+from schemas.limits import MODEL_LIMITS
+from schemas.mechanisms.contacts import Contact, Mode, Pair, Shape, Surface
+from schemas.mechanisms.forces import Force, Motor, Spring, Torque
+from schemas.mechanisms.names import names_of
+from schemas.mechanisms.parts import GROUND, Body, Joint, Loop, Place, Vector
+from schemas.mechanisms.topology import Link, links
+from schemas.pointers import Part
+from schemas.values import Scalar
+
+
+def _gravity() -> list[Expression]:
+    return [Expression.read(0), Expression.read(-9.81)]
+
+
+def _level() -> dict[str, Surface]:
+    return {GROUND: Surface()}
+
+
+class Mechanism(Posted):
+    """Rigid bodies in a vertical plane.
+
+    Coordinates are those of the joints; with ``angles: absolute`` a hinge's is the angle of its
+    child to the world, ``BODY.angle``, and the joint's own name remains known. Velocities are
+    ``d(q)`` (of dotted names ``BODY.d(x)``).
+
+    ``mode`` says which contacts touch all along the phase, and how; loops always hold.
+    """
+
+    kind: Literal["mechanism"]
+    parameters: dict[Identifier, Scalar] = Field(
+        default_factory=dict, max_length=MODEL_LIMITS.parameters
+    )
+    gravity: Vector = Field(default_factory=_gravity, description="m/s^2, in the world's frame.")
+    angles: Literal["relative", "absolute"] = "relative"
+    bodies: dict[Identifier, Body] = Field(min_length=1, max_length=MODEL_LIMITS.bodies)
+    joints: dict[Identifier, Joint] = Field(min_length=1, max_length=MODEL_LIMITS.bodies)
+    loops: dict[Identifier, Loop] = Field(default_factory=dict, max_length=MODEL_LIMITS.bodies)
+    points: dict[Identifier, Place] = Field(
+        default_factory=dict,
+        max_length=MODEL_LIMITS.contacts,
+        description="Places with a name: NAME.x, NAME.y and their velocities NAME.vx, NAME.vy.",
+    )
+    motors: dict[Identifier, Motor] = Field(default_factory=dict, max_length=MODEL_LIMITS.bodies)
+    springs: dict[Identifier, Spring] = Field(default_factory=dict, max_length=MODEL_LIMITS.bodies)
+    controls: list[Identifier] = Field(
+        default_factory=list,
+        max_length=MODEL_LIMITS.controls,
+        description="Controls of your own, for 'forces' and 'torques'.",
+    )
+    define: dict[Identifier, Expression] = Field(default_factory=dict)
+    forces: dict[Identifier, Force] = Field(default_factory=dict, max_length=MODEL_LIMITS.bodies)
+    torques: dict[Identifier, Torque] = Field(default_factory=dict, max_length=MODEL_LIMITS.bodies)
+    contacts: dict[Identifier, Contact] = Field(
+        default_factory=dict, max_length=MODEL_LIMITS.contacts
+    )
+    surfaces: dict[Identifier, Surface] = Field(
+        default_factory=_level, max_length=MODEL_LIMITS.contacts
+    )
+    shapes: dict[Identifier, Shape] = Field(default_factory=dict, max_length=MODEL_LIMITS.contacts)
+    pairs: dict[Identifier, Pair] | None = Field(
+        default=None,
+        max_length=MODEL_LIMITS.contacts,
+        description="What may touch what; left out: every contact may touch every surface.",
+    )
+    mode: dict[Identifier, Mode] = Field(
+        default_factory=dict, description="Pair -> what it does; pairs left out do not touch."
+    )
+
+    @cached_property
+    def links(self) -> list[Link]:
+        """Bodies and their joints, parents first."""
+        return links(self.joints, absolute=self.angles == "absolute")
+
+    @cached_property
+    def coordinates(self) -> list[str]:
+        """The coordinates q."""
+        return [name for link in self.links for name in link.coordinates]
+
+    @property
+    def state_names(self) -> list[str]:
+        """Coordinates, then velocities."""
+        return [*self.coordinates, *(derivative(name) for name in self.coordinates)]
+
+    @cached_property
+    def control_names(self) -> list[str]:
+        """The motors' controls, then those of the user."""
+        return [*(motor_control(name, one) for name, one in self.motors.items()), *self.controls]
+
+    @cached_property
+    def touching(self) -> dict[str, Pair]:
+        """Every permitted pair by its name."""
+        if self.pairs is not None:
+            return dict(self.pairs)
+        alone = len(self.surfaces) == 1
+        return {
+            contact if alone else f"{contact}_{surface}": Pair(contact=contact, against=surface)
+            for contact in self.contacts
+            for surface in self.surfaces
+        }
+
+    @cached_property
+    def defined(self) -> dict[str, int]:
+        """Names that the mechanism defines of itself -> the highest order of their derivatives."""
+        return names_of(self)
+
+    def equations(self) -> Iterator[tuple[tuple[Part, ...], str, Expression]]:
+        """What the user wrote into the dynamics."""
+        for name, force in self.forces.items():
+            yield ("forces", name, "value"), f"force {name}", force.value
+        for name, torque in self.torques.items():
+            yield ("torques", name, "value"), f"torque {name}", torque.value
+        for name, spring in self.springs.items():
+            yield ("springs", name, "engaged"), f"spring {name}", spring.engaged
+
+
+def motor_control(name: str, motor: Motor) -> Series:
+    """The name of a motor's control."""
+    return f"motor.{name}.{'torque' if motor.losses is None else 'current'}"
