@@ -1,5 +1,6 @@
 """One problem from one guess to a judged result: its meshes, its switches, its certificate."""
 
+import time
 from collections.abc import Callable, Sequence
 
 from schemas.problem import Problem
@@ -11,6 +12,9 @@ from solver.prepare import prepare
 from solver.run import Run
 from solver.solution.choose import choose
 from solver.solution.conclude import conclude, snapshot
+
+GRACE = 10.0
+"""Seconds for the certificate, where the limit of the solve leaves less."""
 
 Listen = Callable[[Solution], None]
 
@@ -46,4 +50,6 @@ def _solved(
 def _certificate(problem: Problem, solved: Sequence[SolvedMesh], run: Run) -> Certificate:
     chosen = choose(problem, solved)
     checks = JUDGED if run.stopped() else CHECKS
-    return certify(problem, chosen.phases, finite(chosen.objective), checks, chosen.statics)
+    until = max(run.deadline, time.monotonic() + GRACE)
+    objective = finite(chosen.objective)
+    return certify(problem, chosen.phases, objective, checks, chosen.statics, until)

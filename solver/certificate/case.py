@@ -13,6 +13,7 @@ from schemas.expressions import Tree
 from schemas.phases import Phase
 from schemas.problem import Problem
 from schemas.results import PhaseResult
+from solver.certificate.clock import ENDLESS, Clock
 from solver.lowering import lower
 from solver.lowering.form import Form
 from solver.lowering.used import used_integrals
@@ -56,6 +57,7 @@ class PhaseCase:
     curves: PhaseCurves
     statics: Mapping[str, float]
     judged: tuple[str, ...]
+    clock: Clock = ENDLESS
 
     @property
     def name(self) -> str:
@@ -97,7 +99,12 @@ class PhaseCase:
         """The named integrals that matter, over the published curves."""
         trees = [self.spec.integrals[name].tree for name in self.judged]
         integrand = along(self.form, trees, self.given)
-        found = integrate(self.curves, lambda at: integrand(at.t, at.x, at.u))
+
+        def timed(at: Samples) -> Array:
+            self.clock.look()
+            return integrand(at.t, at.x, at.u)
+
+        found = integrate(self.curves, timed)
         pairs = zip(found.value.tolist(), found.error.tolist(), strict=True)
         return {name: Quadrature(*pair) for name, pair in zip(self.judged, pairs, strict=True)}
 
@@ -145,6 +152,7 @@ class Case:
         results: Sequence[PhaseResult],
         objective: float | None,
         statics: Mapping[str, float | None],
+        clock: Clock = ENDLESS,
     ) -> Self:
         """Read the curves of every phase.
 
@@ -160,7 +168,8 @@ class Case:
             if spec.name not in by_name:
                 raise MalformedCurves(f"phase {spec.name} has no result")
             curves = PhaseCurves.read(form, by_name[spec.name])
-            phases.append(PhaseCase(spec, form, curves, values, used_integrals(problem, spec)))
+            used = used_integrals(problem, spec)
+            phases.append(PhaseCase(spec, form, curves, values, used, clock))
         settings = problem.certificate
         tolerances = certificate_tolerance(problem), settings.constraint_tolerance
         return cls(problem, tuple(phases), values, objective, *tolerances)

@@ -1,5 +1,6 @@
 """The certificate: every check in turn, and the verdict."""
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
@@ -8,6 +9,7 @@ from schemas.problem import Problem
 from schemas.results import Certificate, Check, PhaseResult
 from solver.certificate.bounds import control_overshoot, state_bounds, static_bounds
 from solver.certificate.case import Case
+from solver.certificate.clock import Clock, OutOfTime
 from solver.certificate.constraints import boundary_constraints, linkages, path_constraints
 from solver.certificate.continuity import continuity
 from solver.certificate.dynamics import interval_defect
@@ -42,6 +44,7 @@ def certify(
     objective: float | None,
     checks: Sequence[Callable[[Case], Check | None]] = CHECKS,
     statics: Mapping[str, float | None] | None = None,
+    until: float = math.inf,
 ) -> Certificate:
     """Judge published curves against the problem's own text, by other means than the solver's.
 
@@ -57,6 +60,8 @@ def certify(
         ``CHECKS``, or ``JUDGED`` where there is no time for the rest.
     statics
         The published values of the static parameters.
+    until
+        When to end, in seconds of ``time.monotonic``; a check that has not ended then fails.
 
     Returns
     -------
@@ -64,21 +69,29 @@ def certify(
     ``curves``, whose ``where`` says why.
     """
     try:
-        case = Case.open(problem, phases, objective, statics or {})
+        case = Case.open(problem, phases, objective, statics or {}, Clock(until))
     except MalformedCurves as reason:
-        return Certificate(verdict="not_certified", checks=[_unreadable(str(reason))])
-    rows = [row for row in (check(case) for check in checks) if row is not None]
+        return Certificate(verdict="not_certified", checks=[_failed("curves", str(reason))])
+    rows = [row for row in (_row(check, case) for check in checks) if row is not None]
     passed = all(row.passed for row in rows if row.judged)
     return Certificate(verdict="certified" if passed else "not_certified", checks=rows)
 
 
-def _unreadable(reason: str) -> Check:
+def _row(check: Callable[[Case], Check | None], case: Case) -> Check | None:
+    try:
+        return check(case)
+    except OutOfTime:
+        name = check.__name__.replace("_", " ")
+        return _failed(name, "the time for the certificate is over", judged=check in JUDGED)
+
+
+def _failed(name: str, reason: str, *, judged: bool = True) -> Check:
     return Check(
-        name="curves",
+        name=name,
         value=None,
         tolerance=None,
         unit="",
         passed=False,
-        judged=True,
+        judged=judged,
         where=reason,
     )

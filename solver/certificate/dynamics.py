@@ -72,6 +72,7 @@ def _integrated(phase: PhaseCase, start: Array, tolerance: float) -> Array:
     half, every = curves.lengths / 2, np.arange(curves.segments)
 
     def rates(s: float, y: Array) -> Array:
+        phase.clock.look()
         u = curves.controls.grid(np.array([s]))[:, :, 0]
         f = phase.dynamics(curves.time(every, s), y.reshape(start.shape), u)
         return np.asarray((f * half).ravel())

@@ -48,6 +48,7 @@ def _rates(phase: PhaseCase, segment: int) -> Callable[[float, Array], Array]:
     control = phase.curves.controls.coefficients[:, segment].T
 
     def rates(s: float, x: Array) -> Array:
+        phase.clock.look()
         u = np.asarray(chebyshev.chebval(s, control, tensor=False))
         return np.asarray(phase.dynamics(start + half * (s + 1), x, u) * half)
 

@@ -1,6 +1,7 @@
 """Exact solutions are certified, whatever the shape of the problem."""
 
 import ast
+import time
 from pathlib import Path
 
 import numpy as np
@@ -148,3 +149,11 @@ def imported(path: Path) -> set[str]:
     }
     parts = {node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
     return whole | {name for name in parts if name}
+
+
+def test_a_check_that_has_no_time_left_fails_and_says_so():
+    late = certify(block_problem(), [block_result()], 12.0, until=time.monotonic() - 1)
+    assert late.verdict == "not_certified"
+    check = row(late, "interval defect")
+    assert not check.passed
+    assert check.where == "the time for the certificate is over"
