@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from itertools import pairwise
+from math import isclose
 
 from schemas.checks.constants import Constants
 from schemas.checks.limits import is_variable, not_a_variable
@@ -14,6 +15,8 @@ from schemas.pointers import Part, pointer
 from schemas.problem import Problem
 from schemas.results import CurveGroup
 from schemas.values import Scalar
+
+_SAME = 1e-9  # relative, and in seconds
 
 _Numbered = list[tuple[int, Phase]]
 
@@ -94,10 +97,27 @@ def _solution(guess: SolutionGuess, phases: _Numbered, place: tuple[Part, ...]) 
         names.add(phase.name)
         for group, curves in phase.curves.items():
             yield from _curves(curves, (*place, index, "curves", group))
+        yield from _one_span(phase.curves, (*place, index, "curves"))
     wanted = [phase.name for _, phase in phases]
     if not (len(guess.phases) == len(wanted) == 1 or names.intersection(wanted)):
         hint = f"phases are matched by name; here they are {', '.join(wanted[:12])}"
         yield Issue(pointer(*place), "no phase of this guess is a phase of the problem", hint)
+
+
+def _one_span(groups: dict[str, CurveGroup], place: tuple[Part, ...]) -> Iterator[Issue]:
+    """All curves of a phase start together and end together, but for rounding."""
+    spans = {
+        name: (group.breaks[0], group.breaks[-1]) for name, group in groups.items() if group.breaks
+    }
+    first = next(iter(spans.values()), (0.0, 0.0))
+    for name, span in spans.items():
+        if not all(isclose(a, b, rel_tol=_SAME, abs_tol=_SAME) for a, b in zip(span, first, strict=True)):
+            yield Issue(
+                pointer(*place, name, "breaks"),
+                f"from {span[0]:g} to {span[1]:g} s, where '{next(iter(spans))}' goes from "
+                f"{first[0]:g} to {first[1]:g} s",
+                "the curves of a phase span the same time",
+            )
 
 
 def _curves(group: CurveGroup, place: tuple[Part, ...]) -> Iterator[Issue]:

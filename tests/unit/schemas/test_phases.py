@@ -163,6 +163,15 @@ def test_curves_of_a_guess(path: str, value: Any, pointer: str, message: str) ->
     assert message in issue.message
 
 
+def test_the_curves_of_a_guess_span_the_same_time() -> None:
+    controls = {"breaks": [0, 3], "coefficients": {}}
+    curves = {"states": CURVES["states"], "controls": controls}
+    guess = {"kind": "solution", "phases": [{"name": "any", "curves": curves}]}
+    issue = issues(hopping("phases 0 guess", guess))[0]
+    assert issue.pointer == "/phases/0/guess/phases/0/curves/controls/breaks"
+    assert "from 0 to 3 s" in issue.message
+
+
 def test_guesses_that_fit() -> None:
     curves = {"kind": "solution", "phases": [{"name": "flight", "curves": CURVES}]}
     assert read_problem(hopping("guess", curves)).guess.kind == "solution"
