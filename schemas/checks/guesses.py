@@ -111,7 +111,8 @@ def _one_span(groups: dict[str, CurveGroup], place: tuple[Part, ...]) -> Iterato
     }
     first = next(iter(spans.values()), (0.0, 0.0))
     for name, span in spans.items():
-        if not all(isclose(a, b, rel_tol=_SAME, abs_tol=_SAME) for a, b in zip(span, first, strict=True)):
+        pairs = zip(span, first, strict=True)
+        if not all(isclose(one, other, rel_tol=_SAME, abs_tol=_SAME) for one, other in pairs):
             yield Issue(
                 pointer(*place, name, "breaks"),
                 f"from {span[0]:g} to {span[1]:g} s, where '{next(iter(spans))}' goes from "
