@@ -14,7 +14,7 @@ from solver.model import OPEN, Model, Phase
 from solver.nlp.program import Program, RowLabel
 from solver.nlp.task import NlpTask
 from solver.numeric import along
-from solver.trajectory import Trajectory
+from solver.transcribe import Setting
 
 Array = NDArray[np.float64]
 
@@ -35,7 +35,7 @@ def check_start(
     model: Model,
     program: Program,
     task: NlpTask,
-    guesses: Sequence[Trajectory],
+    setting: Setting,
 ) -> None:
     """Refuse a start at which the program has no finite values or slopes.
 
@@ -51,8 +51,8 @@ def check_start(
     if not (np.isfinite(objective).all() and np.isfinite(rows).all()):
         issues = [
             issue
-            for index, guess in enumerate(guesses)
-            for issue in _broken(problem, model, index, guess)
+            for index in range(len(model.phases))
+            for issue in _broken(problem, model, index, setting)
         ]
         raise InvalidModel(issues or _by_rows(problem, program, ~np.isfinite(rows), "value", _HINT))
     _, gradient = task.nlp.gradient(start, [])
@@ -69,16 +69,17 @@ def _inside(task: NlpTask) -> Array:
     return np.clip(task.start, task.lower + room, task.upper - room)
 
 
-def _broken(problem: Problem, model: Model, index: int, guess: Trajectory) -> Iterator[Issue]:
+def _broken(problem: Problem, model: Model, index: int, setting: Setting) -> Iterator[Issue]:
     """Expressions along a phase that have no value somewhere on its guess."""
-    spec, phase = problem.phases[index], model.phases[index]
+    spec, phase, guess = problem.phases[index], model.phases[index], setting.guesses[index]
     form = phase.chain  # whatever the method: it needs no natives
     fractions = np.linspace(0.0, 1.0, _SAMPLES)
     times = guess.start + (guess.end - guess.start) * fractions
     x = _within(phase, form.states, guess.sample(form.states, fractions))
     u = _within(phase, form.controls, guess.sample(form.controls, fractions))
     named = list(_expressions(spec))
-    given = {static.name: static.guess for static in model.statics}
+    names = [static.name for static in model.statics]
+    given = dict(zip(names, setting.statics, strict=True))
     given |= {f"initial.{name}": float(row[0]) for name, row in zip(form.states, x, strict=True)}
     given["initial.t"] = guess.start
     with np.errstate(all="ignore"):

@@ -244,7 +244,7 @@ def _build(problem: Problem, model: Model, start: Start) -> _Built:
     task = NlpTask.of(transcribed.program, scaling)
     warnings: list[str] = []
     if start.number == 0:
-        check_start(problem, model, transcribed.program, task, setting.guesses)
+        check_start(problem, model, transcribed.program, task, setting)
         names = [phase.name for phase in model.phases]
         warnings += unused_warnings(transcribed.program, task, names)
         warnings += scale_warnings(transcribed.program, task, names)

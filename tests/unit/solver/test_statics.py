@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 
+from schemas.errors import InvalidModel
 from schemas.reading import read_problem
 from solver.prepare import prepare
 from tests.unit.solver.motions import COAST, move, problem
@@ -88,3 +89,13 @@ def test_the_same_in_all_phases() -> None:
 def test_from_where_they_start(static: dict[str, Any], guess: float) -> None:
     _, setting = prepare(read_problem(problem(decay(), static={"k": static})))
     assert setting.statics == [guess]
+
+
+def test_the_start_that_breaks_is_the_guess_of_the_statics() -> None:
+    """The static's own guess would do; that of the solution it starts from does not."""
+    integrals = {"misfit": "sqrt(k) + x^2"}
+    guess = {"kind": "solution", "phases": [{"name": "move", "curves": {}}], "static": {"k": -1}}
+    document = problem(decay(integrals=integrals), objective={"minimize": "misfit"}, guess=guess)
+    with pytest.raises(InvalidModel) as refused:
+        solved(document | {"static": {"k": {"bounds": [-2, 9], "guess": 4}}})
+    assert refused.value.issues[0].pointer.endswith("/integrals/misfit")
