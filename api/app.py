@@ -7,6 +7,7 @@ from importlib.metadata import PackageNotFoundError, version
 from anyio import CapacityLimiter
 from fastapi import Depends, FastAPI
 from fastapi.middleware import Middleware
+from pydantic import BaseModel
 
 from api import problems
 from api.context import Context, require_owner
@@ -15,16 +16,35 @@ from api.guards import BodyGuard, HeadAsGet, HostGuard
 from api.metrics import Metrics
 from api.observing import Observer
 from api.openapi import document, errors
-from api.routes import catalogue, events, health, job, jobs, pages, results, sweep, sweeps
+from api.routes import (
+    catalogue,
+    events,
+    health,
+    job,
+    jobs,
+    pages,
+    results,
+    simulations,
+    sweep,
+    sweeps,
+)
 from api.settings import ApiSettings
 from api.stopping import Stopper
 from schemas.problem import Problem
+from schemas.simulations import Simulation
 from schemas.sweeps import SweepRequest
 from store.ports import Store
 
 _WAITERS = 64
-_OWNED = (jobs, job, results, events, sweeps, sweep, catalogue)
+_OWNED = (jobs, simulations, job, results, events, sweeps, sweep, catalogue)
 _OPEN = (health, pages)
+_POSTED: list[type[BaseModel]] = [
+    Problem,
+    Simulation,
+    SweepRequest,
+    Cancellation,
+    problems.ProblemDetail,
+]
 
 
 def create_app(store: Store, settings: ApiSettings) -> FastAPI:
@@ -67,7 +87,7 @@ def create_app(store: Store, settings: ApiSettings) -> FastAPI:
         app.include_router(module.router, dependencies=guard, responses=errors(401, 503))
     for module in _OPEN:
         app.include_router(module.router)
-    app.openapi = document(app, [Problem, SweepRequest, Cancellation, problems.ProblemDetail])  # type: ignore[method-assign]
+    app.openapi = document(app, _POSTED)  # type: ignore[method-assign]
     return app
 
 

@@ -24,7 +24,7 @@ def sources(store: Store, owner: str) -> Sources:
             raise absent(record, "result")
         return dict(orjson.loads(content))
 
-    return Sources(examples.names, examples.load, result)
+    return Sources(lambda: [*examples.names(), *examples.simulations()], examples.load, result)
 
 
 def absent(record: JobRecord, what: str) -> ResultNotReady | ResultExpired | NoResult:

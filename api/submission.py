@@ -7,42 +7,47 @@ from dataclasses import dataclass
 
 from pydantic import BaseModel, Field
 
-from api.advice import warnings
+from api.advice import lowered, warnings
 from api.context import Context
 from api.earlier import sources
 from api.once import Made, once
 from schemas.errors import QueueFull, RateLimited
-from schemas.inlining import inlined
-from schemas.jobs import JobStatus
+from schemas.inlining import inlined, inlined_simulation
+from schemas.jobs import JobKind, JobStatus
 from schemas.problem import Limits, Problem
 from schemas.reading import canonical, read_problem, spec_sha256
+from schemas.simulations import Simulation, read_simulation
 from store.ports import JobRecord, Store
 
 
 class Validation(BaseModel):
-    """What ``?validate_only=true`` answers for a good problem."""
+    """What ``?validate_only=true`` answers for a good problem or simulation."""
 
     valid: bool = True
     name: str
     spec_sha256: str
-    limits: Limits = Field(description="What the solve may use, after the service's caps.")
+    limits: Limits = Field(description="What the job may use, after the service's caps.")
     warnings: list[str]
 
 
 @dataclass(frozen=True, slots=True)
 class Draft:
-    """A good problem, ready to be stored. ``fingerprint`` is of the body as it was posted."""
+    """A good problem or simulation, ready to be stored.
 
-    problem: Problem
+    ``fingerprint`` is of the request: its kind, and the body as it was posted.
+    """
+
+    kind: JobKind
+    document: Problem | Simulation
     fingerprint: str
     warnings: list[str]
 
     def validation(self) -> Validation:
         """The answer when nothing is to be stored."""
         return Validation(
-            name=self.problem.name,
-            spec_sha256=spec_sha256(self.problem),
-            limits=self.problem.limits,
+            name=self.document.name,
+            spec_sha256=spec_sha256(self.document),
+            limits=self.document.limits,
             warnings=self.warnings,
         )
 
@@ -51,13 +56,31 @@ def read(ctx: Context, body: bytes, owner: str) -> Draft:
     """Check a posted problem, put in what it names, cap what it asks for. Raises BadProblem."""
     found = sources(ctx.store, owner)
     problem = read_problem(body, lambda document: inlined(document, found))
-    asked, caps = problem.limits, ctx.settings
-    limits = Limits(
+    limits = _capped(ctx, problem.limits)
+    capped = problem.model_copy(update={"limits": limits})
+    return Draft(JobKind.SOLVE, capped, _fingerprint(body), warnings(problem, limits))
+
+
+def read_posted_simulation(ctx: Context, body: bytes, owner: str) -> Draft:
+    """As `read`, for a simulation."""
+    found = sources(ctx.store, owner)
+    simulation = read_simulation(body, lambda document: inlined_simulation(document, found))
+    limits = _capped(ctx, simulation.limits)
+    capped = simulation.model_copy(update={"limits": limits})
+    notes = [*lowered(simulation.limits, limits)]
+    return Draft(JobKind.SIMULATION, capped, _fingerprint(b"simulation\n" + body), notes)
+
+
+def _capped(ctx: Context, asked: Limits) -> Limits:
+    caps = ctx.settings
+    return Limits(
         seconds=min(asked.seconds, caps.max_seconds),
         megabytes=min(asked.megabytes, caps.max_megabytes),
     )
-    capped = problem.model_copy(update={"limits": limits})
-    return Draft(capped, hashlib.sha256(body).hexdigest(), warnings(problem, limits))
+
+
+def _fingerprint(request: bytes) -> str:
+    return hashlib.sha256(request).hexdigest()
 
 
 def submit(ctx: Context, draft: Draft, owner: str, key: str | None) -> tuple[JobRecord, bool]:
@@ -82,18 +105,19 @@ def submit(ctx: Context, draft: Draft, owner: str, key: str | None) -> tuple[Job
 
 def _create(ctx: Context, draft: Draft, owner: str) -> JobRecord:
     """The record comes first: whoever finds the id in the queue finds the job."""
-    limits = draft.problem.limits
+    limits = draft.document.limits
     record = JobRecord(
         id=uuid.uuid4().hex,
         owner=owner,
-        name=draft.problem.name,
-        spec_sha256=spec_sha256(draft.problem),
+        name=draft.document.name,
+        spec_sha256=spec_sha256(draft.document),
         status=JobStatus.QUEUED,
         created=time.time(),
         seconds=limits.seconds,
         megabytes=limits.megabytes,
+        kind=draft.kind,
     )
-    ctx.store.jobs.create(record, canonical(draft.problem))
+    ctx.store.jobs.create(record, canonical(draft.document))
     return record
 
 

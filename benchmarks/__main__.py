@@ -7,8 +7,12 @@ MODULES = {
     "cart_pole": "benchmarks.cart_pole",
     "service": "benchmarks.service",
     "imports": "benchmarks.imports",
+    "instructions": "benchmarks.instructions",
     "aims": "benchmarks.aims",
     "growth": "benchmarks.growth",
+    "humanoid": "benchmarks.humanoid",
+    "contact_step": "benchmarks.contact_step",
+    "mujoco": "benchmarks.against_mujoco",
     "peers": "benchmarks.peers.comparison",
 }
 

@@ -18,7 +18,7 @@ from schemas.stages import apply_stage
 from solver import solve
 from solver.campaign.stages import solution_guess
 
-RUNS = 3
+RUNS = 5
 """The best counts: others use the machine, too."""
 
 _OBJECTIVES = ("torque", "torque_rate", "acceleration", "jerk", "snap")

@@ -1,16 +1,19 @@
-"""The gallery: every problem is a JSON file that can be posted as it is."""
+"""The gallery: problems and simulations as JSON files that can be posted as they are."""
 
 import json
 from importlib.resources import files
+from importlib.resources.abc import Traversable
 from typing import Any
 
 
 def names() -> list[str]:
-    """The names of the examples, sorted."""
-    entries = files(__name__).iterdir()
-    return sorted(
-        entry.name.removesuffix(".json") for entry in entries if entry.name.endswith(".json")
-    )
+    """The names of the problems, sorted."""
+    return _names(files(__name__))
+
+
+def simulations() -> list[str]:
+    """The names of the simulations, sorted; none is also that of a problem."""
+    return _names(files(__name__) / "simulations")
 
 
 def load(name: str) -> dict[str, Any]:
@@ -21,7 +24,17 @@ def load(name: str) -> dict[str, Any]:
     KeyError
         If there is no example of that name.
     """
-    if name not in names():
+    folder = files(__name__)
+    if name in simulations():
+        folder = folder / "simulations"
+    elif name not in names():
         raise KeyError(name)
-    text = (files(__name__) / f"{name}.json").read_text(encoding="utf-8")
-    return dict(json.loads(text))
+    return dict(json.loads((folder / f"{name}.json").read_text(encoding="utf-8")))
+
+
+def _names(folder: Traversable) -> list[str]:
+    return sorted(
+        entry.name.removesuffix(".json")
+        for entry in folder.iterdir()
+        if entry.name.endswith(".json")
+    )

@@ -47,6 +47,15 @@ _ABS = 'write "abs": "slack", "abs": {"tanh": 0.01} or "abs": {"sqrt": 0.001}'
 _FEW = 4  # fields that are named beside another hint
 _SHOWN = 60  # characters of a value that a hint repeats
 _MAXIMIZE = 'to maximize, minimize the negative: {"minimize": "-(...)"}'
+_MEANT = {
+    **dict.fromkeys(("hinge", "pin", "rotational", "continuous"), "revolute"),
+    **dict.fromkeys(("slider", "linear", "translational"), "prismatic"),
+    **dict.fromkeys(("fixed", "rigid", "weld"), "welded"),
+    **dict.fromkeys(("free", "planar", "base"), "floating"),
+    **dict.fromkeys(("stick", "stuck", "static"), "sticking"),
+}
+"""What parts of mechanisms are called elsewhere."""
+_PLANE = "write x and y, such as [0, -9.81]"
 _INLINED = ("from_job", "library")
 _EDGE = (
     "a service and the footfall command put in what it names before the problem is read; "
@@ -66,9 +75,9 @@ _HOMES: tuple[tuple[type[Posted], str], ...] = (
 )
 
 
-def issue_of(error: ErrorDetails) -> Issue:
-    """One pydantic error as an issue."""
-    parts, schema = _locate(error)
+def issue_of(error: ErrorDetails, document: type[Posted] = Problem) -> Issue:
+    """One pydantic error, of a kind of document, as an issue."""
+    parts, schema = _locate(error, document)
     write = _WRITERS.get(error["type"], _other)
     return write(error, parts, schema)
 
@@ -137,10 +146,12 @@ def _again(given: Any) -> str:
     return text if len(text) <= _SHOWN else "..."
 
 
-def _list(error: ErrorDetails, parts: list[Part], _: Schema) -> Issue:
+def _list(error: ErrorDetails, parts: list[Part], schema: Schema) -> Issue:
     message = f"expected a list, [...], got {_given(error)}"
     hint = "put it in brackets; commas stand between the items"
-    if isinstance(error["input"], str | int | float):
+    if _is_vector(schema):
+        hint = _PLANE
+    elif isinstance(error["input"], str | int | float):
         hint = f"write [{_again(error['input'])}]"
     return Issue(pointer(*parts), message, hint)
 
@@ -176,7 +187,9 @@ def _choice(given: Any, parts: list[Part], options: list[str]) -> Issue:
     if parts[-2:] == ["nonsmooth", "abs"]:
         return Issue(pointer(*parts), f"{quoted(given)} is no treatment of abs", _ABS)
     message = f"{quoted(given)} is none of {known}" if len(options) > 1 else f"expected {known}"
-    return Issue(pointer(*parts), message, did_you_mean(given, options))
+    meant = _MEANT.get(given)
+    hint = f"write '{meant}'" if meant in options else did_you_mean(given, options)
+    return Issue(pointer(*parts), message, hint)
 
 
 def _pattern(error: ErrorDetails, parts: list[Part], _: Schema) -> Issue:
@@ -191,8 +204,23 @@ def _pattern(error: ErrorDetails, parts: list[Part], _: Schema) -> Issue:
     return Issue(pointer(*parts), f"{quoted(error['input'])} is not a name", hint)
 
 
-def _too_long(error: ErrorDetails, parts: list[Part], _: Schema) -> Issue:
+def _is_vector(schema: Schema) -> bool:
+    """Whether x and y are wanted."""
+    pair = schema.get("minItems") == schema.get("maxItems") == 2
+    return pair and "number" in schema.get("items", {}).get("type", ())
+
+
+def _too_short(error: ErrorDetails, parts: list[Part], schema: Schema) -> Issue:
+    if not _is_vector(schema):
+        return _other(error, parts, schema)
+    given = error["ctx"]["actual_length"]
+    return Issue(pointer(*parts), f"expected x and y, got a list of {given}", _PLANE)
+
+
+def _too_long(error: ErrorDetails, parts: list[Part], schema: Schema) -> Issue:
     given, most = error["ctx"]["actual_length"], error["ctx"]["max_length"]
+    if _is_vector(schema):
+        return Issue(pointer(*parts), f"expected x and y, got a list of {given}", _PLANE)
     message = f"over the limit of '{parts[-1]}': {given}, at most {most} are allowed"
     return Issue(pointer(*parts), message)
 
@@ -209,28 +237,30 @@ _WRITERS: dict[str, Writer] = {
     "literal_error": _literal,
     "string_pattern_mismatch": _pattern,
     "too_long": _too_long,
+    "too_short": _too_short,
 }
 
 
 @cache
-def _published() -> Schema:
-    return Problem.model_json_schema()
+def _published(document: type[Posted]) -> Schema:
+    return document.model_json_schema()
 
 
-def _locate(error: ErrorDetails) -> tuple[list[Part], Schema]:
+def _locate(error: ErrorDetails, document: type[Posted]) -> tuple[list[Part], Schema]:
     """The keys and indices of a location, and the schema of the last known object on the way."""
     marked = error["type"] != "extra_forbidden"  # there '[key]' is what the user wrote
     parts: list[Part] = []
-    schema = _resolve(_published())
+    published = _published(document)
+    schema = _resolve(published, published)
     for part in error["loc"]:
         tagged = _tags(schema)
         if part in tagged:
-            schema = _resolve(tagged[part])
+            schema = _resolve(tagged[part], published)
             continue
         if part == "[key]" and marked:
             continue
         parts.append(part)
-        schema = _resolve(_below(schema, part)) or schema
+        schema = _resolve(_below(schema, part), published) or schema
     return parts, schema
 
 
@@ -249,11 +279,11 @@ def _below(schema: Schema, part: Part) -> Schema:
     return schema.get("properties", {}).get(part) or (by_pattern[0] if by_pattern else {})
 
 
-def _resolve(schema: Schema) -> Schema:
+def _resolve(schema: Schema, published: Schema) -> Schema:
     """Follow references, and through ``anyOf`` to whatever is not null."""
     while True:
         if "$ref" in schema:
-            schema = _published()["$defs"][schema["$ref"].rsplit("/", 1)[1]]
+            schema = published["$defs"][schema["$ref"].rsplit("/", 1)[1]]
         elif "anyOf" in schema and any(option.get("type") == "null" for option in schema["anyOf"]):
             schema = next(option for option in schema["anyOf"] if option.get("type") != "null")
         else:

@@ -11,7 +11,7 @@ class StageStarted(Strict):
     """The pipeline entered a stage, or begins it anew; ``note`` says why."""
 
     type: Literal["stage"] = "stage"
-    stage: Literal["build", "solve", "refine", "certify"]
+    stage: Literal["build", "solve", "refine", "certify", "simulate"]
     note: str = ""
 
 
@@ -39,6 +39,15 @@ class MeshSolved(Strict):
     seconds: float
 
 
+class Advanced(Strict):
+    """A simulation has come to ``time`` of ``end``, in s of the motion; ``events`` happened."""
+
+    type: Literal["advance"] = "advance"
+    time: float
+    end: float
+    events: int = 0
+
+
 class PointEnded(Strict):
     """One point of a sweep has ended. ``index`` counts from 0 over the whole sweep."""
 
@@ -61,8 +70,8 @@ class StateChanged(Strict):
 
 
 Event = Annotated[
-    StageStarted | NlpIteration | MeshSolved | PointEnded | StateChanged,
+    StageStarted | NlpIteration | MeshSolved | Advanced | PointEnded | StateChanged,
     Field(discriminator="type"),
 ]
-EngineEvent = StageStarted | NlpIteration | MeshSolved
+EngineEvent = StageStarted | NlpIteration | MeshSolved | Advanced
 event_adapter: TypeAdapter[Event] = TypeAdapter(Event)

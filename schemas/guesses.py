@@ -2,13 +2,25 @@
 
 from typing import Annotated, Literal
 
-from pydantic import FailFast, Field
+from pydantic import FailFast, Field, StringConstraints
 
-from schemas.base import AlsoNamed, Identifier, Posted, Series
+from schemas.base import AlsoNamed, Posted, Series
 from schemas.results import CurveGroup
 from schemas.values import Scalar
 
 Duration = Annotated[float, Field(gt=0, le=1e9, description="The guessed length in seconds.")]
+
+
+PartName = Annotated[
+    str,
+    StringConstraints(pattern=r"^[A-Za-z_][A-Za-z0-9_]{0,63}(?:/[A-Za-z0-9_]{1,64}){0,2}$"),
+]
+"""The name of a result's phase: PHASE, or PHASE/MODE."""
+
+StaticName = Annotated[
+    str, StringConstraints(pattern=r"^[A-Za-z_][A-Za-z0-9_./]{0,255}$", max_length=256)
+]
+"""The name of a result's static: the user's, or that of an impulse."""
 
 
 class LinearGuess(Posted):
@@ -55,7 +67,7 @@ class RandomGuess(Posted):
 class SolutionPhase(Posted):
     """A phase of an earlier result: its name and its curves, as a result has them."""
 
-    name: Identifier
+    name: PartName
     curves: dict[str, CurveGroup]
 
 
@@ -67,7 +79,7 @@ class SolutionGuess(Posted):
 
     kind: Literal["solution"]
     phases: list[SolutionPhase] = Field(min_length=1, max_length=64)
-    static: dict[Identifier, float] = Field(default_factory=dict)
+    static: dict[StaticName, float] = Field(default_factory=dict)
 
 
 Guess = Annotated[

@@ -1,8 +1,8 @@
 """What a problem only names, put into it before it is stored: it is self-contained from then on.
 
 ``{"kind": "library", "name": "cart_pole"}`` stands for the system of an example's first phase,
-``{"from_job": id}`` for a guess made of an earlier result. What the names lead to comes from
-whoever calls (`Sources`): this module knows no gallery and no store.
+``{"from_job": id}`` for a guess, or the controls of a simulation, made of an earlier result. What
+the names lead to comes from whoever calls (`Sources`): this module knows no gallery and no store.
 """
 
 from collections.abc import Callable, Mapping
@@ -53,6 +53,15 @@ def inlined(document: Document, sources: Sources) -> Document:
     return whole
 
 
+def inlined_simulation(document: Document, sources: Sources) -> Document:
+    """As `inlined`, of a simulation: its system, its controls and its feedback's reference."""
+    work = _Work(sources)
+    whole = work.simulation(document)
+    if work.issues:
+        raise BadProblem(work.issues)
+    return whole
+
+
 def solution_guess(result: Mapping[str, Any]) -> Document:
     """The ``solution`` guess that a result makes: its curves and its free parameters."""
     phases = [
@@ -79,20 +88,30 @@ class _Work:
     def phase(self, phase: Any, parts: tuple[Part, ...]) -> Any:
         if not isinstance(phase, dict):
             return phase
-        whole = self.guess(phase, parts)
-        system = phase.get("system")
-        if isinstance(system, dict) and system.get("kind") == "library":
-            whole = {**whole, "system": self._system(system, (*parts, "system"))}
-        return whole
+        return self._library(self.guess(phase, parts), parts)
 
-    def guess(self, holder: Document, parts: tuple[Part, ...]) -> Document:
-        """The problem or phase with its ``from_job`` replaced."""
-        guess = holder.get("guess")
+    def simulation(self, document: Document) -> Document:
+        whole = self.guess(self._library(document, ()), (), "controls")
+        feedback = whole.get("feedback")
+        if not isinstance(feedback, dict):
+            return whole
+        named = self.guess(feedback, ("feedback",), "reference")
+        return whole if named is feedback else {**whole, "feedback": named}
+
+    def guess(self, holder: Document, parts: tuple[Part, ...], field: str = "guess") -> Document:
+        """The problem or phase (or what has such a field) with its ``from_job`` replaced."""
+        guess = holder.get(field)
         if not (isinstance(guess, dict) and "from_job" in guess):
             return holder
-        place = (*parts, "guess")
+        place = (*parts, field)
         self._refuse_others(guess, ("from_job",), place)
-        return {**holder, "guess": self._earlier(guess["from_job"], (*place, "from_job"))}
+        return {**holder, field: self._earlier(guess["from_job"], (*place, "from_job"))}
+
+    def _library(self, holder: Document, parts: tuple[Part, ...]) -> Document:
+        system = holder.get("system")
+        if isinstance(system, dict) and system.get("kind") == "library":
+            return {**holder, "system": self._system(system, (*parts, "system"))}
+        return holder
 
     def _earlier(self, job_id: Any, parts: tuple[Part, ...]) -> Document:
         if not isinstance(job_id, str):
@@ -120,7 +139,8 @@ class _Work:
             hint = hint or "the gallery (GET /v1/examples) has " + ", ".join(names)
             self._refuse((*parts, "name"), f"{given} is not the name of an example", hint)
             return system
-        plain: Document = self.sources.example(str(name))["phases"][0]["system"]
+        example = self.sources.example(str(name))
+        plain: Document = example.get("system") or example["phases"][0]["system"]
         changes = system.get("parameters", {})
         known = plain.get("parameters", {})
         if not isinstance(changes, dict):

@@ -44,9 +44,10 @@ MOVES: dict[JobStatus, frozenset[JobStatus]] = {
 
 
 class JobKind(StrEnum):
-    """What a job does: solve one problem, or some points of a sweep in a row."""
+    """What a job does: solve one problem, simulate, or solve some points of a sweep in a row."""
 
     SOLVE = "solve"
+    SIMULATION = "simulation"
     SWEEP_CHUNK = "sweep_chunk"
 
 
@@ -69,7 +70,7 @@ class JobError(Strict):
 
 
 class Progress(Strict):
-    """The latest that is known of a running solve."""
+    """The latest that is known of a running solve; of a simulation ``time`` of ``end``, in s."""
 
     stage: str = ""
     mesh: int = 0
@@ -78,6 +79,8 @@ class Progress(Strict):
     objective: float | None = None
     violation: float | None = None
     max_error: float | None = None
+    time: float | None = None
+    end: float | None = None
 
 
 class JobTimings(Strict):
@@ -88,6 +91,7 @@ class JobTimings(Strict):
     solve: float | None = None
     refine: float | None = None
     certify: float | None = None
+    simulate: float | None = None
 
 
 class Job(Strict):

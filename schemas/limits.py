@@ -15,6 +15,8 @@ class ModelLimits:
     """Points of one sweep."""
     sweep_values: int = 2_000_000
     """Points of a sweep times the values of its problem."""
+    simulation_steps: int = 100_000
+    """Of one simulation: its result has a polynomial for each."""
     states: int = 200
     controls: int = 200
     parameters: int = 1000
@@ -25,6 +27,12 @@ class ModelLimits:
     """Of a mechanism; as many joints, motors, springs, loops, forces and torques."""
     contacts: int = 64
     """Of a mechanism; as many points, surfaces, shapes and pairs."""
+    urdf_characters: int = 2_000_000
+    """Of one URDF text."""
+    urdf_elements: int = 50_000
+    urdf_depth: int = 32
+    urdf_links: int = 200
+    """Of one robot; as many joints."""
     segments: int = 20_000
     """Of any mesh; the first mesh has at most a quarter of them."""
     nodes: int = 20_000

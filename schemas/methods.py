@@ -4,8 +4,10 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from schemas.base import Posted
+from schemas.base import Identifier, Posted
 from schemas.limits import MODEL_LIMITS
+from schemas.mechanisms.contacts import Mode
+from schemas.values import Bound
 
 Segments = Annotated[
     int, Field(ge=1, le=MODEL_LIMITS.segments // 4, description="Segments of the first mesh.")
@@ -67,8 +69,41 @@ class DirCol5i(Posted):
     segments: Segments = 12
 
 
+class HybridMode(Posted):
+    """One mode of a sequence: which contacts touch and what they do, and how long."""
+
+    name: Identifier
+    contacts: dict[Identifier, Mode] = Field(
+        default_factory=dict, description="Contacts left out do not touch."
+    )
+    duration: Bound | None = Field(default=None, description="Seconds; free unless given.")
+
+
+class Hybrid(Posted):
+    """A mechanism with contacts in a given sequence of modes, each of them a phase of free length.
+
+    Contacts that touch are held in place, with forces within the friction cone; where one begins
+    to touch there is an impact. ``transcription`` says how each mode is solved; its ``segments``
+    are shared among them. Result phases are called PHASE/MODE.
+    """
+
+    kind: Literal["hybrid"]
+    transcription: Annotated[Trapezoidal | HermiteSimpson | Radau, Field(discriminator="kind")] = (
+        Field(default_factory=lambda: HermiteSimpson(kind="hermite_simpson"))
+    )
+    sequence: list[HybridMode] = Field(min_length=1, max_length=MODEL_LIMITS.phases)
+
+    @property
+    def segments(self) -> int:
+        """Of all modes together."""
+        return self.transcription.segments
+
+
+Transcribed = Trapezoidal | HermiteSimpson | Radau | ChebyshevLobatto | MultipleShooting | DirCol5i
+"""The methods that are transcriptions."""
+
 Method = Annotated[
-    Trapezoidal | HermiteSimpson | Radau | ChebyshevLobatto | MultipleShooting | DirCol5i,
+    Trapezoidal | HermiteSimpson | Radau | ChebyshevLobatto | MultipleShooting | DirCol5i | Hybrid,
     Field(discriminator="kind"),
 ]
 METHODS: tuple[type[Posted], ...] = (
@@ -79,3 +114,7 @@ METHODS: tuple[type[Posted], ...] = (
     MultipleShooting,
     DirCol5i,
 )
+"""Those that the engine transcribes; a schedule of modes is made of them."""
+
+SCHEDULES: tuple[type[Posted], ...] = (Hybrid,)
+"""Those that are made of others."""

@@ -10,6 +10,7 @@ from schemas.expressions import Expression
 from schemas.guesses import Guess
 from schemas.limits import MODEL_LIMITS
 from schemas.methods import Method
+from schemas.periodic import Periodic
 from schemas.systems import System
 from schemas.values import Bound, Scalar
 
@@ -70,5 +71,6 @@ class Phase(Posted):
     integrals: dict[Identifier, Expression] = Field(
         default_factory=dict, max_length=MODEL_LIMITS.integrals
     )
+    periodic: Periodic | None = Field(default=None, description="The phase ends as it starts.")
     method: Method | None = Field(default=None, description="Instead of the problem's.")
     guess: Guess | None = Field(default=None, description="Instead of the problem's.")

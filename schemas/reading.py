@@ -9,6 +9,7 @@ import orjson
 from pydantic import ValidationError
 
 from schemas import stages
+from schemas.base import Posted
 from schemas.checks import check
 from schemas.complaints import issue_of
 from schemas.errors import BadProblem, Issue
@@ -72,17 +73,17 @@ def read_inlined(document: Document, inline: Callable[[Document], Document]) -> 
     return whole
 
 
-def canonical(problem: Problem) -> bytes:
-    """The problem as JSON in one fixed order, defaults filled in, ``known`` left out.
+def canonical(document: Posted) -> bytes:
+    """A problem or simulation as JSON in one fixed order, defaults filled in, without ``known``.
 
-    Reading it gives the problem back: keys are sorted except where their order has a meaning.
+    Reading it gives the document back: keys are sorted except where their order has a meaning.
     """
-    return orjson.dumps(_sorted(problem.model_dump(mode="json", exclude={"known"})))
+    return orjson.dumps(_sorted(document.model_dump(mode="json", exclude={"known"})))
 
 
-def spec_sha256(problem: Problem) -> str:
-    """The hash of the canonical problem, 64 hexadecimal digits."""
-    return hashlib.sha256(canonical(problem)).hexdigest()
+def spec_sha256(document: Posted) -> str:
+    """The hash of the canonical document, 64 hexadecimal digits."""
+    return hashlib.sha256(canonical(document)).hexdigest()
 
 
 def _checked(document: dict[str, Any]) -> Problem:

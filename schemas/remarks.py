@@ -3,21 +3,30 @@
 from collections.abc import Iterator
 from itertools import pairwise
 
+from schemas.checks.masses import Numbers
 from schemas.corners import corners
 from schemas.expressions import names_in
 from schemas.guesses import RandomGuess
+from schemas.mechanisms import Mechanism
+from schemas.mechanisms.four_bars import change_points
 from schemas.problem import Problem
+from schemas.urdf import Urdf
 
 
 def remarks(problem: Problem) -> Iterator[str]:
-    """On several starts, on phases that nothing ties together, on corners; each with its place."""
+    """On several starts, loose phases, linkages that fold flat, corners; each with its place."""
     if problem.multistart > 1 and not isinstance(problem.guess, RandomGuess):
         yield (
             "/multistart: the first guess is the problem's own, the others are random ones with "
             f"the seeds 1 to {problem.multistart - 1}"
         )
     yield from untied(problem)
+    yield from folding(problem)
     yield from corners(problem)
+    for index, phase in enumerate(problem.phases):
+        if isinstance(phase.system, Urdf):
+            for remark in phase.system.tree.remarks:
+                yield f"/phases/{index}/system/text: {remark}"
 
 
 def untied(problem: Problem) -> Iterator[str]:
@@ -34,3 +43,16 @@ def untied(problem: Problem) -> Iterator[str]:
                 f"/linkages: nothing ties '{phase.name}' to a phase before it; for a state that "
                 f"carries over link {phase.name}.initial.NAME to {last.name}.final.NAME"
             )
+
+
+def folding(problem: Problem) -> Iterator[str]:
+    """One line for each loop of four bars that folds flat, where it may go on in two ways."""
+    for index, phase in enumerate(problem.phases):
+        if isinstance(phase.system, Mechanism):
+            numbers = Numbers.of(phase, index)
+            for name in change_points(phase.system, numbers.value):
+                yield (
+                    f"{numbers.at('loops', name)}: a change-point four-bar: its shortest and "
+                    "longest bars are together as long as the others, so it can fold flat, and "
+                    "from there go on in two ways; keep it from the fold by bounds on a joint"
+                )

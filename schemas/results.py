@@ -11,6 +11,7 @@ from typing import Literal
 from pydantic import Field
 
 from schemas.base import Strict
+from schemas.frames import Frames
 
 FORMAT = 1
 """The version of this result format; it grows when a field changes its meaning."""
@@ -62,7 +63,8 @@ class PhaseResult(Strict):
     """One phase: its knots, node values by group, and continuous curves by group.
 
     Groups: ``states``, ``controls``; ``rates``, where derivatives of controls are series of their
-    own; ``costates``, of the continuous problem, at the times at which the method knows them.
+    own; ``forces`` of contacts and loops; ``costates``, of the continuous problem, at the times at
+    which the method knows them. ``frames``: where the bodies of a mechanism are, for drawing.
     """
 
     name: str
@@ -70,6 +72,7 @@ class PhaseResult(Strict):
     groups: dict[str, Group]
     curves: dict[str, CurveGroup]
     integrals: dict[str, float | None] = Field(default_factory=dict)
+    frames: Frames | None = None
 
 
 class MeshIteration(Strict):
@@ -187,6 +190,27 @@ class Reproduce(Strict):
     seed: int | None = None
 
 
+class ModeSpan(Strict):
+    """What touches from ``start`` to ``end``, in seconds, and how; contacts left out are open."""
+
+    start: float
+    end: float
+    contacts: dict[str, str]
+
+
+class ModeSequence(Strict):
+    """When which contacts touch, in order of time.
+
+    ``distinct`` counts the different sets of touching contacts among the modes; ``possible`` is
+    how many there are, 2 to the number of contacts.
+    """
+
+    contacts: list[str]
+    modes: list[ModeSpan]
+    distinct: int
+    possible: int
+
+
 class Solution(Strict):
     """A finished solve. An infeasible problem, too, is a solution with a status."""
 
@@ -201,7 +225,7 @@ class Solution(Strict):
     phases: list[PhaseResult]
     stages: list[StageReport] = Field(default_factory=list)
     minima: list[Minimum] = Field(default_factory=list)
-    mode_sequence: None = None
+    mode_sequence: ModeSequence | None = None
     mesh_refinement: MeshRefinement
     certificate: Certificate
     solver: SolverReport

@@ -15,6 +15,7 @@ from schemas.expressions import Expression
 from schemas.limits import MODEL_LIMITS
 from schemas.mechanisms import Mechanism
 from schemas.pointers import Part
+from schemas.urdf import Urdf
 from schemas.values import Scalar
 
 Parameters = Annotated[
@@ -133,7 +134,7 @@ class ClosedForm(Posted):
 
 
 System = Annotated[
-    Ode | SecondOrder | ClosedForm | Mechanism,
+    Ode | SecondOrder | ClosedForm | Mechanism | Urdf,
     Field(discriminator="kind"),
     AlsoNamed(
         (("kind", "=library"), ("name", "string"), ("parameters", "object")),
@@ -141,4 +142,4 @@ System = Annotated[
         optional=("parameters",),
     ),
 ]
-SYSTEMS: tuple[type[Posted], ...] = (Ode, SecondOrder, ClosedForm, Mechanism)
+SYSTEMS: tuple[type[Posted], ...] = (Ode, SecondOrder, ClosedForm, Mechanism, Urdf)

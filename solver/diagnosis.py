@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from schemas.errors import InvalidModel, Issue
 from schemas.expressions import Expression
+from schemas.mechanisms import Mechanism
 from schemas.phases import Phase as PhaseSpec
 from schemas.pointers import pointer
 from schemas.problem import Problem
@@ -134,6 +135,8 @@ def _pointer(problem: Problem, label: RowLabel) -> str:
 def _equations(phase: PhaseSpec) -> dict[str, str]:
     """The rows that come of each equation of motion, and where it stands."""
     pointers: dict[str, str] = {}
+    if isinstance(phase.system, Mechanism):  # all of it is in every row
+        return {f"dynamics {name}": "system" for name in phase.system.coordinates}
     for place, _, _ in phase.system.equations():
         field, name = place
         where = f"system/{field}/{name}"

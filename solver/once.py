@@ -4,14 +4,20 @@ import time
 from collections.abc import Callable, Sequence
 
 from schemas.problem import Problem
+from schemas.reading import spec_sha256
 from schemas.results import Certificate, Solution, finite
 from solver.certificate import CHECKS, JUDGED, certify
+from solver.hybrid import Expansion, expand, mode_guesses, mode_sequence
 from solver.lowering import smoothed
+from solver.mechanics import limited
 from solver.meshes import SolvedMesh, solve_meshes, solve_switched
+from solver.model import Model
+from solver.poses import loosened
 from solver.prepare import prepare
 from solver.run import Run
 from solver.solution.choose import choose
 from solver.solution.conclude import conclude, snapshot
+from solver.trajectory import Trajectory
 
 GRACE = 10.0
 """Seconds for the certificate, where the limit of the solve leaves less."""
@@ -29,19 +35,40 @@ def solve_once(problem: Problem, run: Run, listen: Listen) -> Solution:
     EngineFault
         If the NLP solver itself fails.
     """
-    smooth = smoothed(problem)
-    solved = _solved(smooth, run, lambda so_far: listen(snapshot(problem, so_far, run)))
+    with run.stage("build"):
+        expansion = expand(problem)
+    smooth = loosened(limited(smoothed(expansion.problem)))
+
+    def guess(model: Model) -> list[Trajectory]:
+        return mode_guesses(expansion, problem, model)
+
+    def publish(so_far: Sequence[SolvedMesh]) -> None:
+        listen(_told(expansion, problem, snapshot(expansion.problem, so_far, run)))
+
+    solved = _solved(smooth, guess, run, publish)
     with run.stage("certify"):
         certificate = _certificate(smooth, solved, run)
-    return conclude(problem, solved, certificate, run)
+    return _told(expansion, problem, conclude(expansion.problem, solved, certificate, run))
+
+
+def _told(expansion: Expansion, problem: Problem, solution: Solution) -> Solution:
+    """What the user learns of the modes; the hash is that of what was posted."""
+    if expansion.problem is problem:
+        return solution
+    digest = solution.reproduce.model_copy(update={"spec_sha256": spec_sha256(problem)})
+    modes = mode_sequence(expansion, solution.phases)
+    return solution.model_copy(update={"reproduce": digest, "mode_sequence": modes})
 
 
 def _solved(
-    problem: Problem, run: Run, publish: Callable[[Sequence[SolvedMesh]], None]
+    problem: Problem,
+    guess: Callable[[Model], list[Trajectory]],
+    run: Run,
+    publish: Callable[[Sequence[SolvedMesh]], None],
 ) -> list[SolvedMesh]:
-    """All meshes, as of the user's own phases."""
+    """All meshes, as of the phases and modes of the problem."""
     with run.stage("build"):
-        model, setting = prepare(problem)
+        model, setting = prepare(problem, guess)
     switches = problem.refinement is not None and problem.refinement.switches
     meshes = solve_switched if switches else solve_meshes
     return meshes(problem, model, setting, run, publish, warm=False)

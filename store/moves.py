@@ -1,10 +1,10 @@
-"""What the two stores share: which moves of a job there are, and what moves and ends write."""
+"""What the two stores share: the moves of a job, what moves and ends write, what is listed."""
 
 import time
 from dataclasses import dataclass
 
 from schemas.events import PointEnded
-from schemas.jobs import MOVES, TERMINAL, JobError, JobStatus, JobTimings
+from schemas.jobs import MOVES, TERMINAL, JobError, JobKind, JobStatus, JobTimings
 from schemas.sweeps import PointOutcome
 from store.ports import JobRecord
 
@@ -42,6 +42,17 @@ def is_due(record: JobRecord, retention: float) -> bool:
     if not (ended and record.has_result and record.finished is not None):
         return False
     return record.finished + retention < time.time()
+
+
+def is_asked(
+    record: JobRecord, status: JobStatus | None, name: str | None, kind: JobKind | None
+) -> bool:
+    """Whether a listing with these filters has the record; None filters nothing."""
+    return (
+        status in (None, record.status)
+        and name in (None, record.name)
+        and kind in (None, record.kind)
+    )
 
 
 def point_event(index: int, outcome: PointOutcome) -> PointEnded:

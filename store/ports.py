@@ -102,7 +102,7 @@ class Jobs(Protocol):
     """Job records. Moves are compare-and-set along ``schemas.jobs.MOVES``."""
 
     def create(self, record: JobRecord, problem: bytes) -> None:
-        """Store a queued record and its problem; a record is there before its id is queued."""
+        """Store a queued record and its document; a record is there before its id is queued."""
 
     def get(self, job_id: str, owner: str | None = None) -> JobRecord:
         """The record. ``owner`` None: the worker's view. Raises UnknownJob."""
@@ -111,7 +111,7 @@ class Jobs(Protocol):
         """The records of several jobs at once, None for unknown ones (the worker's view)."""
 
     def problem(self, job_id: str) -> bytes:
-        """The stored problem (of a chunk: its plan). Raises UnknownJob."""
+        """The stored problem, simulation, or plan of a chunk. Raises UnknownJob."""
 
     def list(
         self,
@@ -119,6 +119,7 @@ class Jobs(Protocol):
         *,
         status: JobStatus | None = None,
         name: str | None = None,
+        kind: JobKind | None = None,
         cursor: str | None = None,
         limit: int = 50,
     ) -> Page:

@@ -6,6 +6,7 @@ import sys
 
 from schemas.errors import FootfallError
 from worker import logs
+from worker.attempt import Engines
 from worker.main import check, run_worker
 from worker.settings import WorkerSettings, server_url
 from worker.warming import warm_up
@@ -28,11 +29,13 @@ def main(arguments: list[str] | None = None) -> int:
         from footfall.report import render  # noqa: PLC0415
         from solver import solve  # noqa: PLC0415
         from solver.backends import BACKENDS  # noqa: PLC0415
+        from solver.simulation import simulate  # noqa: PLC0415
 
         available = [name for name, backend in BACKENDS.items() if backend().available()]
         settings = WorkerSettings(url=url, name=options.name)
-        warm_up(solve, render)
-        run_worker(settings, solve, render, backends=available)
+        engines = Engines(solve, simulate, render)
+        warm_up(engines)
+        run_worker(settings, engines, backends=available)
     except FootfallError as error:
         sys.stderr.write(f"{error.message} {error.hint}\n")
         return 1

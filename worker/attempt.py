@@ -2,13 +2,16 @@
 
 import time
 from collections.abc import Callable
-from typing import Any, Protocol
+from dataclasses import dataclass
+from typing import Any, Protocol, TypeVar
 
 from schemas.events import EngineEvent
 from schemas.problem import Problem
 from schemas.results import Solution
+from schemas.simulated import SimulationResult
+from schemas.simulations import Simulation
 from worker import limits, outcomes
-from worker.outcomes import Outcome
+from worker.outcomes import Finished, Outcome
 from worker.reporting import Reporter
 
 
@@ -27,30 +30,42 @@ class Engine(Protocol):
         """Solve. ``deadline`` is a time of ``time.monotonic``."""
 
 
+class Simulator(Protocol):
+    """``solver.simulation.simulate``, or what a test puts in its place."""
+
+    def __call__(
+        self,
+        simulation: Simulation,
+        *,
+        on_event: Callable[[EngineEvent], None],
+        deadline: float,
+        should_stop: Callable[[], bool],
+    ) -> SimulationResult:
+        """Simulate. ``deadline`` is a time of ``time.monotonic``."""
+
+
+R = TypeVar("R", bound=Finished)
 Render = Callable[[dict[str, Any], dict[str, Any]], str]
-"""``footfall.report.render``: a result and its problem to a page."""
+"""``footfall.report.render``: a result and the document it came of to a page."""
+
+
+@dataclass(frozen=True, slots=True)
+class Engines:
+    """What a worker works with, loaded once before it forks."""
+
+    solve: Engine
+    simulate: Simulator
+    render: Render
 
 
 def attempt(
-    engine: Engine,
-    problem: Callable[[], Problem],
-    reporter: Reporter,
-    *,
-    seconds: float,
-    megabytes: int,
-    on_snapshot: Callable[[Solution], None],
-) -> Outcome:
-    """Read the problem and solve it, both inside of the budget; nothing is raised."""
+    work: Callable[[float], R], reporter: Reporter, *, seconds: float, megabytes: int
+) -> Outcome[R]:
+    """Do the work, which is told its deadline, inside of the budget; nothing is raised."""
     deadline = time.monotonic() + seconds
     try:
         with limits.memory(megabytes):
-            solution = engine(
-                problem(),
-                on_event=reporter,
-                deadline=deadline,
-                should_stop=lambda: reporter.stop,
-                on_snapshot=on_snapshot,
-            )
+            finished = work(deadline)
     except Exception as error:  # noqa: BLE001 - whatever the engine does, the job must end
         return outcomes.failed(error, reporter.job_id)
-    return outcomes.solved(solution)
+    return outcomes.finished(finished)

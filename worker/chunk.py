@@ -8,7 +8,7 @@ import logging
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Never
 
 import orjson
 from pydantic import ValidationError
@@ -40,7 +40,7 @@ _FINAL = frozenset({SolutionStatus.CANCELLED, SolutionStatus.TIME_LIMIT})
 
 def solve_chunk(
     store: Store, engine: Engine, record: JobRecord, reporter: Reporter
-) -> Outcome | None:
+) -> Outcome[Never] | None:
     """Solve what is left of a chunk; how its job ends, or None if it was taken over."""
     try:
         plan = SweepPlan.model_validate_json(store.sweeps.plan(record.sweep))
@@ -55,7 +55,7 @@ def solve_chunk(
 class _Tried:
     """How a point went; ``warm``: from the solution of another one."""
 
-    outcome: Outcome
+    outcome: Outcome[Solution]
     warm: bool = False
     seconds: float = 0.0
 
@@ -71,7 +71,7 @@ class _Chunk:
     plan: SweepPlan
     guess: SolutionGuess | None = None
 
-    def run(self, chunk: ChunkPlan) -> Outcome | None:
+    def run(self, chunk: ChunkPlan) -> Outcome[Never] | None:
         known = self.store.sweeps.points(self.record.sweep)
         self._resume(chunk, known)
         for index in range(chunk.first, chunk.end):
@@ -107,39 +107,37 @@ class _Chunk:
         """From the solution before, and where that leads nowhere from the point's own guess."""
         began, guess = time.monotonic(), self.guess
         outcome = self._attempt(index, guess, self.plan.seconds)
-        status = outcome.solution.status if outcome.solution else None
+        status = outcome.result.status if outcome.result else None
         if guess is not None and status not in _SOLVED | _FINAL:
             guess = None
             left = self.plan.seconds - (time.monotonic() - began)
             outcome = self._attempt(index, guess, left)
-        if self.plan.warm and outcome.solution and outcome.solution.status in _SOLVED:
-            self.guess = _guess(outcome.solution.model_dump(mode="json"))
+        if self.plan.warm and outcome.result and outcome.result.status in _SOLVED:
+            self.guess = _guess(outcome.result.model_dump(mode="json"))
         return _Tried(outcome, guess is not None, time.monotonic() - began)
 
-    def _attempt(self, index: int, guess: SolutionGuess | None, seconds: float) -> Outcome:
+    def _attempt(
+        self, index: int, guess: SolutionGuess | None, seconds: float
+    ) -> Outcome[Solution]:
         began = time.monotonic()
 
-        def problem() -> Problem:
-            return _from(guess, read_problem(replaced(self.plan.base, self.plan.points[index])))
+        def work(deadline: float) -> Solution:
+            point = read_problem(replaced(self.plan.base, self.plan.points[index]))
+            return self.engine(
+                _from(guess, point),
+                on_event=self.reporter,
+                deadline=min(deadline, began + point.limits.seconds),
+                should_stop=lambda: self.reporter.stop,
+                on_snapshot=lambda _: None,
+            )
 
-        def engine(problem: Problem, **options: Any) -> Solution:
-            deadline = min(options.pop("deadline"), began + problem.limits.seconds)
-            return self.engine(problem, deadline=deadline, **options)
-
-        return attempt(
-            engine,
-            problem,
-            self.reporter,
-            seconds=seconds,
-            megabytes=self.plan.megabytes,
-            on_snapshot=lambda _: None,
-        )
+        return attempt(work, self.reporter, seconds=seconds, megabytes=self.plan.megabytes)
 
     def _cancelled(self) -> bool:
         return self.store.jobs.get(self.record.id).status is JobStatus.CANCELLING
 
     def _keep(self, index: int, tried: _Tried) -> bool:
-        solution = tried.outcome.solution
+        solution = tried.outcome.result
         result = solution.model_dump_json().encode() if solution else None
         outcome = _described(tried)
         logger.info("job %s: point %d %s", self.record.id, index, outcome.status)
@@ -169,7 +167,7 @@ def _given_up(attempts: int) -> _Tried:
 
 
 def _described(tried: _Tried) -> PointOutcome:
-    solution, error = tried.outcome.solution, tried.outcome.error
+    solution, error = tried.outcome.result, tried.outcome.error
     if solution is None:
         message = error.message if error else ""
         return PointOutcome(

@@ -13,7 +13,7 @@ from store.backend.connection import open_client
 from store.backend.wiring import assemble
 from store.ports import Store
 from store.settings import LONG, NONE, SHORT, StoreSettings
-from worker.attempt import Engine, Render
+from worker.attempt import Engines
 from worker.presence import Presence, unique_name
 from worker.process import FootfallWorker
 from worker.run import RUNNER, Runner
@@ -24,15 +24,14 @@ logger = logging.getLogger("footfall.worker")
 
 def run_worker(
     settings: WorkerSettings,
-    engine: Engine,
-    render: Render,
+    engines: Engines,
     *,
     backends: Sequence[str] = (),
     store_settings: StoreSettings | None = None,
 ) -> None:
     """Work until told to end: the first SIGTERM or SIGINT lets the job end, a second kills it.
 
-    Everything that ``engine`` needs is loaded by the caller, so that no fork loads it again.
+    Everything that ``engines`` need is loaded by the caller, so that no fork loads it again.
     Call it in the main thread. Raises StoreUnavailable if the server stays away at the start.
     """
     settings = replace(settings, name=settings.name or unique_name())
@@ -41,7 +40,7 @@ def run_worker(
     store = assemble(client, kept)
     glance = connect(settings.url, patience=NONE, settings=kept)
     _first_word(store, glance)
-    RUNNER.set(Runner(store, glance, engine, render, settings.name))
+    RUNNER.set(Runner(store, glance, engines, settings.name))
     presence = Presence(store, settings.name, settings.ttl, backends)
     logger.info("worker %s starts", settings.name)
     gc.freeze()  # what is here already: a fork's collector would copy it page by page

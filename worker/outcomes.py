@@ -2,15 +2,23 @@
 
 import logging
 from dataclasses import dataclass
+from typing import Generic, Never, TypeVar
 
 from rq.timeouts import JobTimeoutException
 
 from schemas.errors import PROBLEM_TYPES, BadProblem, EngineFault, FootfallError
 from schemas.jobs import JobError, JobIssue, JobStatus
 from schemas.results import Solution, SolutionStatus
+from schemas.simulated import SimulationResult, SimulationStatus
 
 logger = logging.getLogger("footfall.worker")
 _LONGEST = 300
+
+_STOPPED = (SolutionStatus.CANCELLED, SimulationStatus.CANCELLED)
+
+Finished = Solution | SimulationResult
+R = TypeVar("R", bound=Finished)
+R_co = TypeVar("R_co", bound=Finished, covariant=True)
 
 OUT_OF_MEMORY = "out-of-memory"
 OUT_OF_TIME = "out-of-time"
@@ -18,21 +26,21 @@ WORKER_KILLED = "worker-killed"
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
-    """The end of an attempt: a state, and the solution or the error."""
+class Outcome(Generic[R_co]):
+    """The end of an attempt: a state, and the result or the error."""
 
     to: JobStatus
-    solution: Solution | None = None
+    result: R_co | None = None
     error: JobError | None = None
 
 
-def solved(solution: Solution) -> Outcome:
+def finished(result: R) -> Outcome[R]:
     """The engine finished, however the mathematics ended; or it was asked to stop."""
-    cancelled = solution.status is SolutionStatus.CANCELLED
-    return Outcome(JobStatus.CANCELLED if cancelled else JobStatus.SUCCEEDED, solution=solution)
+    cancelled = result.status in _STOPPED
+    return Outcome(JobStatus.CANCELLED if cancelled else JobStatus.SUCCEEDED, result=result)
 
 
-def failed(error: Exception, job_id: str) -> Outcome:
+def failed(error: Exception, job_id: str) -> Outcome[Never]:
     """What the record says of an exception; a trace goes to the log alone."""
     if isinstance(error, BadProblem):
         return Outcome(JobStatus.FAILED, error=_bad_problem(error))
@@ -56,20 +64,20 @@ def failed(error: Exception, job_id: str) -> Outcome:
 
 
 def out_of_memory() -> JobError:
-    """The solve asked for more memory than the problem allows it."""
+    """The job asked for more memory than it may have."""
     return JobError(
         type=OUT_OF_MEMORY,
-        message="The solve needs more memory than limits.megabytes allows.",
-        hint="Raise limits.megabytes, or use fewer segments.",
+        message="The job needs more memory than limits.megabytes allows.",
+        hint="Raise limits.megabytes, or use fewer segments or samples.",
     )
 
 
 def out_of_time() -> JobError:
-    """The solve overran its budget where its own deadline is not asked."""
+    """The job overran its budget where its own deadline is not asked."""
     return JobError(
         type=OUT_OF_TIME,
-        message="The solve overran limits.seconds without reaching an iterate.",
-        hint="Raise limits.seconds, or use fewer segments.",
+        message="The job overran limits.seconds without reaching a result.",
+        hint="Raise limits.seconds, or use fewer segments or larger steps.",
     )
 
 

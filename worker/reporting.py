@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from schemas.errors import StoreUnavailable
-from schemas.events import EngineEvent, MeshSolved, NlpIteration, StageStarted
+from schemas.events import Advanced, EngineEvent, MeshSolved, NlpIteration, StageStarted
 from schemas.jobs import JobTimings, Progress
 from schemas.results import Solution
 from store.ports import JobRecord, Store
@@ -26,12 +26,14 @@ PATIENCE = 0.5
 """Seconds between two snapshots; a solve that is over sooner leaves its result instead."""
 
 _KEPT = 200
+_STEPS = (NlpIteration, Advanced)
 
 
 class Reporter:
     """Takes the engine's events and snapshots, and brings them to the store.
 
-    Every stage and mesh is told, if late; of the NLP iterations between two exchanges the last.
+    Every stage and mesh is told, if late; of the steps (NLP iterations, advances of a simulation)
+    between two exchanges the last.
     ``stop`` says whether the engine should: the job was cancelled, handed on, or is an orphan.
     """
 
@@ -60,7 +62,7 @@ class Reporter:
         with self._lock:
             news = self._news(event, time.monotonic())
             self._progress = self._progress.model_copy(update=news)
-            if isinstance(event, NlpIteration) and isinstance(self._last(), NlpIteration):
+            if isinstance(event, _STEPS) and isinstance(self._last(), type(event)):
                 self._events.pop()
             self._events.append(event)
 
@@ -160,4 +162,6 @@ class Reporter:
         if isinstance(event, MeshSolved):
             names = {"mesh", "segments", "objective", "max_error"}
             return event.model_dump(include=names)
+        if isinstance(event, Advanced):
+            return event.model_dump(include={"time", "end"})
         return event.model_dump(include={"mesh", "iteration", "objective", "violation"})

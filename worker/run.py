@@ -9,10 +9,11 @@ from dataclasses import dataclass
 from schemas.errors import StoreUnavailable
 from schemas.jobs import JobKind, JobStatus
 from schemas.reading import read_problem
+from schemas.simulations import read_simulation
 from store.ports import JobRecord, Store
-from worker.attempt import Engine, Render, attempt
+from worker.attempt import Engines, attempt
 from worker.chunk import solve_chunk
-from worker.outcomes import Outcome
+from worker.outcomes import Finished, Outcome
 from worker.reporting import Reporter
 
 logger = logging.getLogger("footfall.worker")
@@ -24,12 +25,11 @@ class Runner:
 
     store: Store
     glance: Store
-    engine: Engine
-    render: Render
+    engines: Engines
     worker: str
 
     def run(self, job_id: str) -> None:
-        """Claim, solve, store the result, move the state; nothing if the job is not to be had."""
+        """Claim, work, store the result, move the state; nothing if the job is not to be had."""
         record = self.store.jobs.claim(job_id, self.worker)
         if record is None:
             logger.info("job %s is not queued any more; passed over", job_id)
@@ -39,54 +39,71 @@ class Runner:
         if record.kind is JobKind.SWEEP_CHUNK:
             self._chunk(record, reporter)
         else:
-            self._solve(record, reporter)
+            self._whole(record, reporter)
 
     def _chunk(self, record: JobRecord, reporter: Reporter) -> None:
         """The points are stored as they end; what is left is the state of the job."""
         with reporter.talking():
-            outcome = solve_chunk(self.store, self.engine, record, reporter)
+            outcome = solve_chunk(self.store, self.engines.solve, record, reporter)
         reporter.finish(with_snapshot=False)
         if outcome is None:
             logger.warning("job %s was taken over by another attempt", record.id)
         else:
             self._move(record, outcome, reporter)
 
-    def _solve(self, record: JobRecord, reporter: Reporter) -> None:
-        problem = self.store.jobs.problem(record.id)
+    def _whole(self, record: JobRecord, reporter: Reporter) -> None:
+        """A job with one document and one result."""
+        document = self.store.jobs.problem(record.id)
+        work = self._simulate if record.kind is JobKind.SIMULATION else self._solve
         with reporter.talking():
             outcome = attempt(
-                self.engine,
-                lambda: read_problem(problem),
+                lambda deadline: work(document, reporter, deadline),
                 reporter,
                 seconds=record.seconds,
                 megabytes=record.megabytes,
-                on_snapshot=reporter.snapshot,
             )
-        self._finish(record, problem, outcome, reporter)
+        self._finish(record, document, outcome, reporter)
+
+    def _solve(self, document: bytes, reporter: Reporter, deadline: float) -> Finished:
+        return self.engines.solve(
+            read_problem(document),
+            on_event=reporter,
+            deadline=deadline,
+            should_stop=lambda: reporter.stop,
+            on_snapshot=reporter.snapshot,
+        )
+
+    def _simulate(self, document: bytes, reporter: Reporter, deadline: float) -> Finished:
+        return self.engines.simulate(
+            read_simulation(document),
+            on_event=reporter,
+            deadline=deadline,
+            should_stop=lambda: reporter.stop,
+        )
 
     def _finish(
-        self, record: JobRecord, problem: bytes, outcome: Outcome, reporter: Reporter
+        self, record: JobRecord, document: bytes, outcome: Outcome[Finished], reporter: Reporter
     ) -> None:
         """The result first, then the state that promises it; what nobody waits for comes last."""
-        solution = outcome.solution
-        reporter.finish(with_snapshot=solution is None)
-        result = solution.model_dump_json().encode() if solution else None
+        finished = outcome.result
+        reporter.finish(with_snapshot=finished is None)
+        result = finished.model_dump_json().encode() if finished else None
         if result and not self.store.results.put(record.id, record.token, result):
             logger.warning("job %s was taken over by another attempt", record.id)
             return
         if self._move(record, outcome, reporter) and result:
-            self._report(record, result, problem)
+            self._report(record, result, document)
 
-    def _move(self, record: JobRecord, outcome: Outcome, reporter: Reporter) -> bool:
+    def _move(self, record: JobRecord, outcome: Outcome[Finished], reporter: Reporter) -> bool:
         """The state in which the attempt leaves its job; False if the attempt is stale."""
-        solution, error = outcome.solution, outcome.error
+        finished, error = outcome.result, outcome.error
         moved = self.store.jobs.move(
             record.id,
             outcome.to,
             expect=frozenset({JobStatus.RUNNING, JobStatus.CANCELLING}),
             token=record.token,
-            solution_status=solution.status if solution else None,
-            message=solution.message if solution else error.message if error else "",
+            solution_status=finished.status if finished else None,
+            message=finished.message if finished else error.message if error else "",
             error=error,
             timings=reporter.timings(),
         )
@@ -94,14 +111,14 @@ class Runner:
             logger.warning("job %s was taken over by another attempt", record.id)
             return False
         seconds = time.time() - (record.started or record.created)
-        how = solution.status if solution else error.type if error else record.kind
+        how = finished.status if finished else error.type if error else record.kind
         logger.info("job %s: %s (%s) after %.2f s", record.id, outcome.to, how, seconds)
         self._to_disk(record.id)
         return True
 
-    def _report(self, record: JobRecord, result: bytes, problem: bytes) -> None:
+    def _report(self, record: JobRecord, result: bytes, document: bytes) -> None:
         try:
-            page = self.render(json.loads(result), json.loads(problem)).encode()
+            page = self.engines.render(json.loads(result), json.loads(document)).encode()
             self.store.results.put_report(record.id, record.token, page)
         except Exception:  # the page is an extra; the job has ended well without it
             logger.exception("job %s: the report could not be made", record.id)

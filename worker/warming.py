@@ -1,14 +1,16 @@
-"""One small solve before the first job, so that no fork has to load or build what all need.
+"""One small job of each kind before the first, so that no fork loads or builds what all need.
 
 What a fork touches first, it pays for: modules imported on first use, the plugins of the NLP
-solver, validators built late. Solved here once, it is shared by all forks.
+solver, validators built late. Done here once, it is shared by all forks.
 """
 
 import json
+import math
 from typing import Any
 
 from schemas.reading import read_problem
-from worker.attempt import Engine, Render
+from schemas.simulations import read_simulation
+from worker.attempt import Engines
 
 _PENDULUM: dict[str, Any] = {
     "name": "warming up",
@@ -34,14 +36,28 @@ _PENDULUM: dict[str, Any] = {
     "refinement": {"tolerance": 1e-4, "max_iterations": 2},
 }
 
+_SWING: dict[str, Any] = {
+    "name": "warming up",
+    "system": _PENDULUM["phases"][0]["system"],
+    "initial": {"q": 1},
+    "duration": 0.5,
+}
 
-def warm_up(engine: Engine, render: Render) -> None:
-    """Solve a small problem and draw its report."""
-    solution = engine(
+
+def warm_up(engines: Engines) -> None:
+    """Solve a small problem, simulate a small system, and draw the reports."""
+    solution = engines.solve(
         read_problem(json.dumps(_PENDULUM)),
         on_event=lambda _: None,
         deadline=None,
         should_stop=lambda: False,
         on_snapshot=lambda _: None,
     )
-    render(json.loads(solution.model_dump_json()), _PENDULUM)
+    engines.render(json.loads(solution.model_dump_json()), _PENDULUM)
+    simulated = engines.simulate(
+        read_simulation(json.dumps(_SWING)),
+        on_event=lambda _: None,
+        deadline=math.inf,
+        should_stop=lambda: False,
+    )
+    engines.render(json.loads(simulated.model_dump_json()), _SWING)

@@ -37,6 +37,7 @@ function progress(job) {
   if (job.queue_position !== null) return `number ${job.queue_position + 1} in the queue`;
   const at = job.progress;
   if (!at || !job.links.cancel) return ""; // it has not begun, or has ended
+  if (job.kind === "simulation") return at.end === null ? at.stage : `${at.time.toPrecision(3)} of ${at.end} s`;
   return `${at.stage}, mesh ${at.mesh + 1} of ${at.segments} segments, iteration ${at.iteration}`;
 }
 
@@ -65,7 +66,7 @@ function row(job) {
   const objective = job.progress?.objective;
   const value = job.solution_status && objective != null ? `objective ${objective.toPrecision(8)}` : "";
   made.append(
-    cell(job.name, job.id),
+    cell(job.name, job.kind === "simulation" ? `simulation, ${job.id}` : job.id),
     cell(job.status, progress(job)),
     cell(ended, value),
     cell(new Date(job.created).toLocaleString()),
@@ -156,11 +157,21 @@ async function showProblem() {
   byId("problem").value = JSON.stringify(problem, null, 2);
 }
 
+// A simulation has one system, a problem has phases; what is neither is refused as a problem.
+function destination(body) {
+  try {
+    const { phases, system } = JSON.parse(body);
+    return system !== undefined && phases === undefined ? "/v1/simulations" : "/v1/jobs";
+  } catch {
+    return "/v1/jobs";
+  }
+}
+
 async function post() {
   await shown;
   const headers = { "Content-Type": "application/json" };
   const body = byId("problem").value;
-  const job = await call("/v1/jobs", { method: "POST", headers, body });
+  const job = await call(destination(body), { method: "POST", headers, body });
   byId("answer").textContent = `Queued as ${job.id}.`;
 }
 

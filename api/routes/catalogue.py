@@ -2,7 +2,7 @@
 
 import inspect
 from functools import cache
-from typing import Annotated, Any, get_args
+from typing import Annotated, Any, Literal, get_args
 
 from fastapi import APIRouter, Depends, Path
 from fastapi.responses import JSONResponse
@@ -13,17 +13,22 @@ from api.context import Ctx, require_owner
 from api.errors import NoRoute
 from api.limits import ServiceLimits, limits
 from api.openapi import errors
-from api.published import problem_schema
-from schemas.methods import METHODS
+from api.published import schema_of
+from schemas.base import Posted
+from schemas.methods import METHODS, SCHEDULES
+from schemas.problem import Problem
+from schemas.simulations import SIMULATION_METHODS, Simulation
 from schemas.suggest import did_you_mean
 
 router = APIRouter(prefix="/v1", tags=["catalogue"], dependencies=[Depends(require_owner)])
 
 
 class Example(BaseModel):
-    """One problem of the gallery. ``href`` serves it, ready to be posted."""
+    """One document of the gallery. ``href`` serves it, ready to be posted to ``post``."""
 
     name: str
+    kind: Literal["problem", "simulation"]
+    post: str
     title: str
     description: str
     href: str
@@ -36,7 +41,7 @@ class Examples(BaseModel):
 
 
 class MethodInfo(BaseModel):
-    """One transcription method, and the JSON Schema of its settings."""
+    """One method, and the JSON Schema of its settings."""
 
     kind: str
     title: str
@@ -45,9 +50,10 @@ class MethodInfo(BaseModel):
 
 
 class Methods(BaseModel):
-    """The methods a problem may ask for."""
+    """The methods that a problem may ask for, and those of a simulation."""
 
     methods: list[MethodInfo]
+    simulation_methods: list[MethodInfo]
 
 
 class BackendInfo(BaseModel):
@@ -66,16 +72,16 @@ class Backends(BaseModel):
 
 @router.get("/examples")
 def get_examples() -> Examples:
-    """The gallery: problems that can be posted as they are."""
-    return Examples(examples=[_example(name) for name in examples.names()])
+    """The gallery: problems and simulations that can be posted as they are."""
+    return Examples(examples=[_example(name) for name in _gallery()])
 
 
 @router.get("/examples/{name}", responses=errors(404))
 def get_example(
     name: Annotated[str, Path(description="As the gallery lists it.")],
 ) -> dict[str, Any]:
-    """One problem of the gallery."""
-    names = examples.names()
+    """One document of the gallery."""
+    names = _gallery()
     if name not in names:
         hint = did_you_mean(name, names) or "GET /v1/examples lists them."
         raise NoRoute("There is no such example.", hint)
@@ -84,8 +90,10 @@ def get_example(
 
 @router.get("/methods")
 def get_methods() -> Methods:
-    """The transcription methods, with the JSON Schema of their settings."""
-    return Methods(methods=_methods())
+    """The methods of problems and of simulations, with the JSON Schema of their settings."""
+    return Methods(
+        methods=_methods((*METHODS, *SCHEDULES)), simulation_methods=_methods(SIMULATION_METHODS)
+    )
 
 
 @router.get("/backends")
@@ -106,7 +114,13 @@ class SchemaResponse(JSONResponse):
 @router.get("/schema", response_class=SchemaResponse)
 def get_schema() -> SchemaResponse:
     """The JSON Schema (2020-12) of a problem."""
-    return SchemaResponse(problem_schema())
+    return SchemaResponse(schema_of(Problem))
+
+
+@router.get("/schema/simulation", response_class=SchemaResponse)
+def get_simulation_schema() -> SchemaResponse:
+    """The JSON Schema (2020-12) of a simulation."""
+    return SchemaResponse(schema_of(Simulation))
 
 
 @router.get("/limits")
@@ -115,16 +129,27 @@ def get_limits(ctx: Ctx) -> ServiceLimits:
     return limits(ctx.settings)
 
 
+def _gallery() -> list[str]:
+    return [*examples.names(), *examples.simulations()]
+
+
 def _example(name: str) -> Example:
-    problem = examples.load(name)
-    title, words = str(problem.get("name", name)), str(problem.get("description", ""))
-    return Example(name=name, title=title, description=words, href=f"/v1/examples/{name}")
+    document = examples.load(name)
+    simulated = "phases" not in document
+    return Example(
+        name=name,
+        kind="simulation" if simulated else "problem",
+        post="/v1/simulations" if simulated else "/v1/jobs",
+        title=str(document.get("name", name)),
+        description=str(document.get("description", "")),
+        href=f"/v1/examples/{name}",
+    )
 
 
 @cache
-def _methods() -> list[MethodInfo]:
+def _methods(models: tuple[type[Posted], ...]) -> list[MethodInfo]:
     found = []
-    for model in METHODS:
+    for model in models:
         title, _, words = (inspect.getdoc(model) or "").partition("\n")
         (kind,) = get_args(model.model_fields["kind"].annotation)
         schema = model.model_json_schema()

@@ -16,6 +16,7 @@ from api.views import etag, matches
 from footfall.report import render
 from schemas.jobs import TERMINAL
 from schemas.results import Solution
+from schemas.simulated import SimulationResult
 from store.ports import JobRecord
 
 logger = logging.getLogger("footfall.api")
@@ -31,7 +32,7 @@ origin of its own: even a script smuggled into it could not reach this service."
 
 @router.get(
     "/result",
-    response_model=Solution,
+    response_model=Solution | SimulationResult,
     responses=errors(404, 409, 410, also={304: {"description": "It is what If-None-Match names."}}),
 )
 def get_result(

@@ -8,7 +8,7 @@ from api.bodies import JsonBody
 from api.context import Ctx, Owner
 from api.errors import BadParameter
 from api.openapi import errors, request_body
-from api.routes.jobs import IdempotencyKey
+from api.posting import IdempotencyKey
 from api.sweep_views import State, sweep_response, sweep_view
 from api.sweeping import SweepValidation, read, submit, validation
 from schemas.errors import BadProblem

@@ -86,11 +86,20 @@ def _processor_time() -> float:
     return used.ru_utime + used.ru_stime
 
 
+def _environment() -> dict[str, str]:
+    """One thread; and bytecode is kept, as that of an installed tool is.
+
+    Else a tool that runs from its sources compiles them in every process, and the others do not.
+    """
+    compiled = {key: text for key, text in os.environ.items() if key != "PYTHONDONTWRITEBYTECODE"}
+    return compiled | _ONE_THREAD
+
+
 def _ask(entrant: Entrant, problem: str, *arguments: str) -> Any:
     module = f"benchmarks.peers.with_{entrant.tool}"
     command: list[str | Path] = [python(entrant), "-W", "ignore", "-m", module, problem, *arguments]
     done = subprocess.run(  # noqa: S603 - our own command
-        command, capture_output=True, text=True, env=os.environ | _ONE_THREAD, check=False
+        command, capture_output=True, text=True, env=_environment(), check=False
     )
     if done.returncode:
         raise Failed((done.stderr.strip().splitlines() or ["no message"])[-1])

@@ -37,7 +37,7 @@ class Row:
     why
         Why printed value and ours differ, where they do.
     kind
-        How the row is measured: a solve, many solves from random guesses, or the seed's sums.
+        How the row is measured: a solve, whole runs from random guesses, or the seed's sums.
     """
 
     name: str

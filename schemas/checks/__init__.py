@@ -9,15 +9,22 @@ from collections.abc import Callable, Iterator
 from schemas.checks import (
     chains,
     closed_forms,
+    contacts,
+    drives,
     equations,
     guesses,
     limits,
+    masses,
     methods,
     names,
     nonsmooth,
+    parts,
     references,
+    schedules,
     sizes,
     times,
+    trees,
+    urdf,
 )
 from schemas.errors import Issue
 from schemas.problem import Problem
@@ -26,13 +33,20 @@ Check = Callable[[Problem], Iterator[Issue]]
 
 CHECKS: tuple[Check, ...] = (
     names.check,
+    parts.check,
+    trees.check,
+    masses.check,
+    drives.check,
+    contacts.check,
     equations.check,
     references.check,
     chains.check,
     closed_forms.check,
     limits.check,
+    urdf.check,
     times.check,
     methods.check,
+    schedules.check,
     guesses.check,
     nonsmooth.check,
 )

@@ -9,18 +9,21 @@ from typing import NamedTuple
 
 from schemas.checks.places import places
 from schemas.errors import Issue
-from schemas.expressions import Expression, derivative, names_in, split
+from schemas.expressions import Expression, derivative, names_in, stem
 from schemas.expressions.names import MAX_ORDER
+from schemas.mechanisms import Mechanism, motor_control
 from schemas.methods import DirCol5i
 from schemas.pointers import Part, pointer
 from schemas.problem import Problem
 from schemas.systems import ClosedForm, Ode, SecondOrder, System
+from schemas.urdf import Urdf, motor_torque
 
 _DEEPEST = 3 * MAX_ORDER
 """Orders that a chain may pass on its way, as for ``dddd(y)`` where y is ``dddd(x)``."""
 _CUBIC = 2
 """Derivatives of controls that `DirCol5i` has."""
 _RESIDUAL = "#"
+_ENDS = ("initial.", "final.")
 
 
 class Node(NamedTuple):
@@ -68,7 +71,9 @@ class Chains:
                 n for n in nodes_in([one]) if n.base in self._made or n.base not in system.define
             ]
             self._made[name] = 0, earlier
-        if isinstance(system, Ode):
+        if isinstance(system, Mechanism | Urdf):
+            self._made |= _of_mechanism(system, native=native)
+        elif isinstance(system, Ode):
             self._made |= {name: (1, nodes_in([one])) for name, one in system.derivatives.items()}
         elif isinstance(system, SecondOrder) and not native:
             given = system.accelerations or {}
@@ -123,15 +128,47 @@ class Chains:
 
 
 def nodes_in(expressions: Iterable[Expression]) -> list[Node]:
-    """The names of expressions without a prefix, each once."""
-    parts = (split(name.name) for one in expressions for name in names_in(one.tree))
-    return list(dict.fromkeys(Node(base, order) for prefix, order, base in parts if not prefix))
+    """The names of expressions, each once; values at ends do not vary."""
+    names = (name.name for one in expressions for name in names_in(one.tree))
+    parts = (stem(name) for name in names if not name.startswith(_ENDS))
+    return list(dict.fromkeys(Node(base, order) for order, base in parts))
+
+
+def _of_mechanism(system: Mechanism | Urdf, *, native: bool) -> dict[str, tuple[int, list[Node]]]:
+    """All accelerations together are made of all controls; other names of coordinates."""
+    first = system.coordinates[:1]  # one stands for all: they have the same derivatives
+    controls = [Node(name, 0) for name in system.control_names]
+    pushing = nodes_in(expression for _, _, expression in system.equations())
+    made: dict[str, tuple[int, list[Node]]] = {
+        name: (0, [Node(one, MAX_ORDER - order) for one in first])
+        for name, order in system.defined.items()
+    }
+    for name, control in _drives(system).items():
+        for word in (f"motor.{name}.torque", f"motor.{name}.power"):
+            if word in made:
+                made[word][1].append(Node(control, 0))
+    if not native:
+        made[_RESIDUAL] = 0, [*controls, *pushing]
+        made |= {name: (2, [Node(_RESIDUAL, 0)]) for name in system.coordinates}
+    return made
+
+
+def _drives(system: Mechanism | Urdf) -> dict[str, str]:
+    """Motors and their controls."""
+    if isinstance(system, Urdf):
+        return {name: motor_torque(name) for name in system.motor_joints}
+    return {name: motor_control(name, motor) for name, motor in system.motors.items()}
 
 
 def _circles(system: System, place: tuple[Part, ...]) -> Iterator[Issue]:
     """Equations of motion that need what they give."""
+    if isinstance(system, Mechanism | Urdf):
+        equations = [(parts, one) for parts, _, one in system.equations()]
+        yield from _high_residuals(system, equations, place)
+        return
     if isinstance(system, SecondOrder) and system.residual is not None:
-        yield from _high_residuals(system, system.residual, place)
+        rows = enumerate(system.residual)
+        yield from _high_residuals(system, [(("residual", i), one) for i, one in rows], place)
         return
     order = 1 if isinstance(system, Ode) else 2
     chains, done = Chains(system, native=False), set[Node]()
@@ -152,16 +189,19 @@ def _told(way: list[Node]) -> str:
 
 
 def _high_residuals(
-    system: SecondOrder, residual: list[Expression], place: tuple[Part, ...]
+    system: SecondOrder | Mechanism | Urdf,
+    residual: list[tuple[tuple[Part, ...], Expression]],
+    place: tuple[Part, ...],
 ) -> Iterator[Issue]:
     chains = Chains(system, native=True)
-    for index, expression in enumerate(residual):
+    what = "a residual" if isinstance(system, SecondOrder) else "a force"
+    for parts, expression in residual:
         for node, root in chains.reached(nodes_in([expression])):
             if node.base in system.coordinates and node.order > 2:
                 through = "" if node == root else f" (by way of {root})"
                 yield Issue(
-                    pointer(*place, "residual", index),
-                    f"a residual settles accelerations, but this one needs {node}{through}",
+                    pointer(*place, *parts),
+                    f"{what} settles accelerations, but this one needs {node}{through}",
                     f"use dd({node.base}) at the most",
                 )
                 break
@@ -172,8 +212,8 @@ def _too_high(system: System, roots: Mapping[Node, Where], *, native: bool) -> I
     if isinstance(system, ClosedForm):
         return
     chains, told = Chains(system, native=native), set[Node]()
-    most = dict.fromkeys(system.controls, _CUBIC if native else MAX_ORDER)
-    if native and isinstance(system, SecondOrder):
+    most = dict.fromkeys(system.control_names, _CUBIC if native else MAX_ORDER)
+    if native and isinstance(system, SecondOrder | Mechanism | Urdf):
         most |= dict.fromkeys(system.coordinates, MAX_ORDER)
     for node, root in chains.reached(roots):
         limit = most.get(node.base, _DEEPEST - 1)
@@ -186,22 +226,29 @@ def _too_high(system: System, roots: Mapping[Node, Where], *, native: bool) -> I
             yield Issue(pointer(*parts), message, hint, column)
 
 
+def _without_end(name: str) -> str:
+    head, _, rest = name.partition(".")
+    return rest if f"{head}." in _ENDS else name
+
+
 def _written(problem: Problem) -> list[dict[Node, Where]]:
     """For each phase the names that are written of it, each where it is first."""
     found: list[dict[Node, Where]] = [{} for _ in problem.phases]
     phases = {phase.name: index for index, phase in enumerate(problem.phases)}
     for place in places(problem):
         for name in names_in(place.expression.tree):
-            prefix, order, base = split(name.name)
-            index = phases.get(prefix.partition(".")[0], 0 if place.phase else None)
+            head, _, rest = name.name.partition(".")
+            index = phases.get(head, 0 if place.phase else None)
+            inside = rest if head in phases else name.name
             if place.parts[0] == "phases":
-                index = int(place.parts[1])
+                index, inside = int(place.parts[1]), name.name
             if index is not None:
+                order, base = stem(_without_end(inside))
                 found[index].setdefault(Node(base, order), Where(place.parts, name.column))
     for index, phase in enumerate(problem.phases):
         for field in ("bounds", "initial", "final"):
             for name in getattr(phase, field):
-                _, order, base = split(name)
+                order, base = stem(name)
                 where = Where(("phases", index, field, name))
                 found[index].setdefault(Node(base, order), where)
     return found

@@ -99,7 +99,8 @@ def _solution(guess: SolutionGuess, phases: _Numbered, place: tuple[Part, ...]) 
             yield from _curves(curves, (*place, index, "curves", group))
         yield from _one_span(phase.curves, (*place, index, "curves"))
     wanted = [phase.name for _, phase in phases]
-    if not (len(guess.phases) == len(wanted) == 1 or names.intersection(wanted)):
+    known = {name.partition("/")[0] for name in names}  # PHASE/MODE is of PHASE
+    if not (len(guess.phases) == len(wanted) == 1 or known.intersection(wanted)):
         hint = f"phases are matched by name; here they are {', '.join(wanted[:12])}"
         yield Issue(pointer(*place), "no phase of this guess is a phase of the problem", hint)
 

@@ -4,9 +4,9 @@ import math
 from collections.abc import Iterator, Mapping
 
 from schemas.checks.constants import Constants, Interval
-from schemas.checks.places import variables
+from schemas.checks.places import limited
 from schemas.errors import Issue
-from schemas.expressions import derivative, split
+from schemas.expressions import derivative, stem
 from schemas.habits import as_rate
 from schemas.phases import Constraint, Phase
 from schemas.pointers import Part, pointer
@@ -40,7 +40,7 @@ def _statics(problem: Problem, constants: Constants) -> Iterator[Issue]:
 
 
 def _bounds(phase: Phase, root: tuple[Part, ...], constants: Constants) -> Iterator[Issue]:
-    known = variables(phase)
+    known = limited(phase)
     along: dict[str, Interval] = {}
     for field in ("bounds", "initial", "final"):
         for name, bound in getattr(phase, field).items():
@@ -60,13 +60,13 @@ def _bounds(phase: Phase, root: tuple[Part, ...], constants: Constants) -> Itera
 
 def is_variable(name: str, known: Mapping[str, int]) -> bool:
     """Whether the name is one of the variables, or a derivative of one that exists."""
-    _, order, base = split(name)
+    order, base = stem(name)
     return known.get(base, -1) >= order
 
 
 def not_a_variable(name: str, known: Mapping[str, int], parts: tuple[Part, ...]) -> Issue:
     """The issue of a name that should be a state or a control, or a derivative of one."""
-    _, order, base = split(name)
+    order, base = stem(name)
     hint = as_rate(name, (word for word, most in known.items() if most))
     hint = hint or did_you_mean(name, [derivative(word, order) for word in known])
     if name == "t":

@@ -2,13 +2,16 @@
 
 from collections.abc import Iterator
 
+from schemas.checks.chains import Chains, nodes_in
 from schemas.checks.degrees import nonlinear
 from schemas.errors import Issue
-from schemas.methods import ChebyshevLobatto, DirCol5i, MultipleShooting
+from schemas.mechanisms import Mechanism
+from schemas.methods import ChebyshevLobatto, DirCol5i, Method, MultipleShooting
 from schemas.phases import Phase
 from schemas.pointers import Part, pointer
 from schemas.problem import Problem
 from schemas.systems import ClosedForm, SecondOrder
+from schemas.urdf import Urdf
 
 
 def check(problem: Problem) -> Iterator[Issue]:
@@ -25,7 +28,9 @@ def check(problem: Problem) -> Iterator[Issue]:
             continue
         method = phase.method or problem.method
         chosen = (*place, "method", "kind") if phase.method else ("method", "kind")
-        if isinstance(method, DirCol5i) and not isinstance(phase.system, SecondOrder):
+        if isinstance(phase.system, Mechanism | Urdf):
+            yield from _of_mechanism(phase, phase.system, method, place, chosen)
+        elif isinstance(method, DirCol5i) and not isinstance(phase.system, SecondOrder):
             yield Issue(
                 pointer(*chosen),
                 f"dircol5i is for second_order systems, that of the phase '{phase.name}' is an "
@@ -41,6 +46,40 @@ def check(problem: Problem) -> Iterator[Issue]:
             )
         if isinstance(method, MultipleShooting):
             yield from _explicit(phase, place)
+
+
+def _of_mechanism(
+    phase: Phase,
+    system: Mechanism | Urdf,
+    method: Method,
+    place: tuple[Part, ...],
+    chosen: tuple[Part, ...],
+) -> Iterator[Issue]:
+    """Forces of contacts and loops need methods that have such unknowns at their nodes."""
+    if isinstance(method, DirCol5i) and _held(system):
+        yield Issue(
+            pointer(*chosen),
+            f"dircol5i has no forces of contacts and loops, which the phase '{phase.name}' needs",
+            "choose another method, such as radau",
+        )
+    if not isinstance(method, MultipleShooting):
+        return
+    chains, forces = Chains(system, native=True), ("normal", "tangential")
+    for parts, label, expression in system.equations():
+        for node, _ in chains.reached(nodes_in([expression])):
+            held = node.base.rpartition(".")[2].startswith(forces) or node.base.startswith("loop.")
+            if held or (node.base in system.coordinates and node.order > 1):
+                yield Issue(
+                    pointer(*place, "system", *parts),
+                    f"multiple_shooting needs the {label} over coordinates and velocities only",
+                    "choose a collocation method, such as hermite_simpson",
+                )
+                break
+
+
+def _held(system: Mechanism | Urdf) -> bool:
+    """Whether forces hold something all along."""
+    return bool(system.mode) or (isinstance(system, Mechanism) and bool(system.loops))
 
 
 def _explicit(phase: Phase, place: tuple[Part, ...]) -> Iterator[Issue]:

@@ -6,10 +6,12 @@ from itertools import chain
 from schemas.errors import Issue
 from schemas.expressions import FUNCTIONS
 from schemas.expressions.tokens import REFUSED_WORDS
+from schemas.mechanisms import Mechanism
 from schemas.phases import Constraint, Phase
 from schemas.pointers import Part, pointer
 from schemas.problem import Problem
 from schemas.systems import ClosedForm, SecondOrder, System
+from schemas.urdf import Urdf
 
 RESERVED = frozenset(
     {
@@ -63,11 +65,28 @@ def _varying(system: System, root: tuple[Part, ...]) -> Iterator[_Declared]:
         for name in system.states:
             yield name, "a state", (*root, "states", name)
         return
+    if isinstance(system, Mechanism):
+        yield from _of_mechanism(system, root)
+        return
+    if isinstance(system, Urdf):
+        for name in system.coordinates:
+            yield name, "a joint", (*root, "text")
+        for index, name in enumerate(system.controls):
+            yield name, "a control", (*root, "controls", index)
+        return
     field, kind, names = "states", "a state", system.state_names
     if isinstance(system, SecondOrder):
         field, kind, names = "coordinates", "a coordinate", system.coordinates
     for index, name in enumerate(names):
         yield name, kind, (*root, field, index)
+    for index, name in enumerate(system.controls):
+        yield name, "a control", (*root, "controls", index)
+
+
+def _of_mechanism(system: Mechanism, root: tuple[Part, ...]) -> Iterator[_Declared]:
+    """Joints, whose coordinates bear their names, and the user's own controls."""
+    for name in system.joints:
+        yield name, "a joint", (*root, "joints", name)
     for index, name in enumerate(system.controls):
         yield name, "a control", (*root, "controls", index)
 

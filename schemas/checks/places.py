@@ -3,12 +3,15 @@
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from schemas.expressions import Expression, split
+from schemas.expressions import Expression, split, stem
 from schemas.expressions.names import MAX_ORDER
+from schemas.mechanisms import Mechanism
+from schemas.mechanisms.contacts import HEIGHT_NAME
 from schemas.phases import Phase
 from schemas.pointers import Part
 from schemas.problem import Problem
 from schemas.systems import ClosedForm
+from schemas.urdf import Urdf
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,13 +87,19 @@ def at_problem(problem: Problem) -> Scope:
 
 def variables(phase: Phase) -> dict[str, int]:
     """States or coordinates, then controls, each with the highest order of its derivatives."""
-    states = [name for name in phase.system.state_names if not split(name).order]
+    states = [name for name in phase.system.state_names if not stem(name)[0]]
     return _orders(phase, [*states, *phase.system.control_names])
+
+
+def limited(phase: Phase) -> dict[str, int]:
+    """What bounds and ends may be given for: variables, and names that a mechanism defines."""
+    own = phase.system.defined if isinstance(phase.system, Mechanism | Urdf) else {}
+    return variables(phase) | own
 
 
 def varying(phase: Phase) -> dict[str, int]:
     """Variables and intermediates, each with the highest order of its derivatives."""
-    return variables(phase) | _orders(phase, phase.system.define)
+    return limited(phase) | _orders(phase, phase.system.define)
 
 
 def _orders(phase: Phase, names: Iterable[str]) -> dict[str, int]:
@@ -106,6 +115,9 @@ def _of_system(problem: Problem, phase: Phase, root: tuple[Part, ...]) -> Iterat
     """Intermediates, each of which sees those before it, and the equations of motion."""
     system = phase.system
     seen = Scope(_constant(problem, phase) | {"t": 0})
+    if isinstance(system, Mechanism | Urdf):
+        yield from _of_mechanism(problem, phase, system, root)
+        seen.orders.update(limited(phase))
     if isinstance(system, ClosedForm):
         seen.orders.update((f"initial.{name}", 0) for name in ("t", *system.states))
     else:
@@ -115,3 +127,14 @@ def _of_system(problem: Problem, phase: Phase, root: tuple[Part, ...]) -> Iterat
         seen.orders.update(_orders(phase, [name]))
     for parts, _, expression in system.equations():
         yield Place((*root, *parts), expression, seen, phase)
+
+
+def _of_mechanism(
+    problem: Problem, phase: Phase, system: Mechanism | Urdf, root: tuple[Part, ...]
+) -> Iterator[Place]:
+    """What does not change over time: over parameters and statics; heights over x, too."""
+    constant = Scope(_constant(problem, phase))
+    over_ground = Scope(_constant(problem, phase) | {HEIGHT_NAME: 0})
+    for parts, expression in system.constants():
+        high = parts[0] == "surfaces" and parts[-1] == "height"
+        yield Place((*root, *parts), expression, over_ground if high else constant, phase)

@@ -9,7 +9,7 @@ from schemas.expressions.constant import constant
 from schemas.expressions.errors import ExpressionError
 from schemas.expressions.field import Expression
 from schemas.expressions.fold import fold
-from schemas.expressions.names import derivative, split
+from schemas.expressions.names import derivative, split, stem
 from schemas.expressions.parser import parse
 from schemas.expressions.smoothness import warnings_in
 from schemas.expressions.tree import FUNCTIONS, OPERATORS, Call, Name, Number, Tree, names_in, walk
@@ -29,6 +29,7 @@ __all__ = [
     "names_in",
     "parse",
     "split",
+    "stem",
     "walk",
     "warnings_in",
 ]

@@ -33,6 +33,12 @@ def split(name: str) -> Parts:
     return Parts(prefix + dot, 0, last)
 
 
+def stem(name: str) -> tuple[int, str]:
+    """The order of a derivative and what it is one of, dots and all: (1, "torso.x")."""
+    prefix, order, base = split(name)
+    return order, prefix + base
+
+
 def derivative(name: str, order: int = 1) -> str:
     """The name of a derivative of ``name``, which may be a derivative: ``dd(q)`` of ``d(q)``."""
     prefix, already, base = split(name)

@@ -24,7 +24,11 @@ class Contact(Place):
 
 
 class Surface(Posted):
-    """Fixed ground; free above it. ``height`` is an expression of ``x`` (and parameters)."""
+    """Fixed ground; free above it. ``height`` is an expression of ``x`` (and parameters).
+
+    The gap is ``(y - height) / sqrt(1 + slope^2)``, less the contact's radius, height and slope
+    taken at the contact's x.
+    """
 
     height: Expression = ZERO
     friction: Expression = ONE
@@ -32,7 +36,12 @@ class Surface(Posted):
 
 
 class Shape(Posted):
-    """A circle or an ellipse of a body that contact points may touch from outside."""
+    """A circle or an ellipse of a body that contact points may touch from outside.
+
+    The gap to an ellipse is a distance to first order: with x, y the contact in the body's frame,
+    from ``at``, and ``g = hypot(x/a, y/b)``, it is ``g (g - 1) / hypot(x/a^2, y/b^2)``, less the
+    contact's radius; for a circle that is exact.
+    """
 
     body: Identifier
     at: Vector = Field(default_factory=origin)

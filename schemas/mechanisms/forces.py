@@ -31,7 +31,8 @@ class Motor(Posted):
     """Drives a joint. Its control is ``motor.NAME.torque`` (a force, N, of a slider).
 
     With ``gear`` the joint sees the control times the gear. With ``losses`` the control is
-    ``motor.NAME.current``. Limits are of the joint's side: torque, ``speed``, ``power``.
+    ``motor.NAME.current`` and ``motor.NAME.torque`` is what reaches the joint; the gearbox is then
+    in their constants. Limits are of the joint's side: torque, ``speed``, ``power``.
     """
 
     joint: Identifier
@@ -47,8 +48,9 @@ class Spring(Posted):
     """Between parent and child of a joint, or between two points.
 
     The force is ``stiffness (rest - z) - damping d(z)`` along z, the joint's coordinate or the
-    distance of the points. A tendon pulls only. ``engaged`` scales the whole: 1, a schedule over
-    ``t``, or a static that the solver chooses between 0 and 1 (a clutch).
+    distance of the points: a positive one pushes them apart. A tendon pulls only: its force is
+    the smaller of that and 0. ``engaged`` scales the whole: 1, a schedule over ``t``, or a static
+    that the solver chooses between 0 and 1 (a clutch).
     """
 
     joint: Identifier | None = None

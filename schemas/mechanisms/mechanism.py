@@ -1,8 +1,8 @@
 """A planar mechanism as data: bodies, joints, what drives it, what it may touch."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import cached_property
-from typing import Literal
+from typing import Any, Literal, Self
 
 from pydantic import Field
 
@@ -16,6 +16,13 @@ from schemas.mechanisms.parts import GROUND, Body, Joint, Loop, Place, Vector
 from schemas.mechanisms.topology import Link, links
 from schemas.pointers import Part
 from schemas.values import Scalar
+
+_CONSTANT = (
+    *("gravity", "bodies", "joints", "loops", "points", "motors", "springs"),
+    *("forces", "torques", "contacts", "surfaces", "shapes", "pairs"),
+)
+_CACHED = ("links", "coordinates", "control_names", "touching", "defined")
+_VARYING = frozenset({("springs", "engaged"), ("forces", "value"), ("torques", "value")})
 
 
 def _gravity() -> list[Expression]:
@@ -75,6 +82,19 @@ class Mechanism(Posted):
     mode: dict[Identifier, Mode] = Field(
         default_factory=dict, description="Pair -> what it does; pairs left out do not touch."
     )
+    loose: list[Series] = Field(
+        default_factory=list,
+        max_length=MODEL_LIMITS.contacts,
+        description="Forces that the motion does not determine, controls then: the solver's own "
+        "finding, such as contact.heel.tangential where contact.toe.tangential is found already.",
+    )
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """As pydantic's, but nothing that follows from the old fields is kept."""
+        copied = super().model_copy(update=update, deep=deep)
+        for name in _CACHED:
+            copied.__dict__.pop(name, None)
+        return copied
 
     @cached_property
     def links(self) -> list[Link]:
@@ -93,8 +113,9 @@ class Mechanism(Posted):
 
     @cached_property
     def control_names(self) -> list[str]:
-        """The motors' controls, then those of the user."""
-        return [*(motor_control(name, one) for name, one in self.motors.items()), *self.controls]
+        """The motors' controls, those of the user, and forces that are loose."""
+        motors = (motor_control(name, one) for name, one in self.motors.items())
+        return [*motors, *self.controls, *self.loose]
 
     @cached_property
     def touching(self) -> dict[str, Pair]:
@@ -113,6 +134,11 @@ class Mechanism(Posted):
         """Names that the mechanism defines of itself -> the highest order of their derivatives."""
         return names_of(self)
 
+    def constants(self) -> Iterator[tuple[tuple[Part, ...], Expression]]:
+        """Everything that does not change over time: masses, places, stiffnesses; and heights."""
+        for field in _CONSTANT:
+            yield from _expressions(getattr(self, field), (field,))
+
     def equations(self) -> Iterator[tuple[tuple[Part, ...], str, Expression]]:
         """What the user wrote into the dynamics."""
         for name, force in self.forces.items():
@@ -126,3 +152,21 @@ class Mechanism(Posted):
 def motor_control(name: str, motor: Motor) -> Series:
     """The name of a motor's control."""
     return f"motor.{name}.{'torque' if motor.losses is None else 'current'}"
+
+
+def _expressions(
+    value: object, parts: tuple[Part, ...]
+) -> Iterator[tuple[tuple[Part, ...], Expression]]:
+    """The constant expressions in any part of a mechanism, each with its place."""
+    if isinstance(value, Expression):
+        if (parts[0], parts[-1]) not in _VARYING:
+            yield parts, value
+    elif isinstance(value, Posted):
+        for field in type(value).model_fields:
+            yield from _expressions(getattr(value, field), (*parts, field))
+    elif isinstance(value, dict):
+        for name, one in value.items():
+            yield from _expressions(one, (*parts, name))
+    elif isinstance(value, list):
+        for index, one in enumerate(value):
+            yield from _expressions(one, (*parts, index))

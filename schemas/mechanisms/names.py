@@ -1,11 +1,10 @@
 """The names that a mechanism brings along, for expressions: places, forces, energies."""
 
-from typing import TYPE_CHECKING
+from collections.abc import Collection, Iterable
+from typing import Protocol
 
 from schemas.expressions.names import MAX_ORDER
-
-if TYPE_CHECKING:
-    from schemas.mechanisms.mechanism import Mechanism
+from schemas.mechanisms.topology import Link
 
 FRAME = ("x", "y", "angle", "vx", "vy", "omega")
 POINT = ("x", "y", "vx", "vy")
@@ -15,11 +14,41 @@ MOTOR = ("torque", "speed", "power")
 SPRING = ("length", "force")
 CONTACT = ("gap", "slip", "normal", "tangential")
 
-_VELOCITY = frozenset({"vx", "vy", "omega", "px", "py", "spin", "slip", "speed"})
+_VELOCITY = frozenset(
+    {
+        *("vx", "vy", "omega", "px", "py", "spin", "slip", "speed"),
+        *("kinetic", "total", "torque", "power", "force"),
+    }
+)
 _ACCELERATION = frozenset({"normal", "tangential"})
 
 
-def names_of(mechanism: "Mechanism") -> dict[str, int]:
+class Parts(Protocol):
+    """What of a mechanism has names."""
+
+    @property
+    def bodies(self) -> Collection[str]: ...  # noqa: D102
+    @property
+    def points(self) -> Collection[str]: ...  # noqa: D102
+    @property
+    def contacts(self) -> Collection[str]: ...  # noqa: D102
+    @property
+    def motors(self) -> Collection[str]: ...  # noqa: D102
+    @property
+    def springs(self) -> Collection[str]: ...  # noqa: D102
+    @property
+    def loops(self) -> Collection[str]: ...  # noqa: D102
+    @property
+    def touching(self) -> Collection[str]: ...  # noqa: D102
+    @property
+    def links(self) -> list[Link]: ...  # noqa: D102
+    @property
+    def coordinates(self) -> list[str]: ...  # noqa: D102
+    @property
+    def control_names(self) -> list[str]: ...  # noqa: D102
+
+
+def names_of(mechanism: Parts) -> dict[str, int]:
     """Each name that is neither coordinate nor control -> the highest order of its derivatives.
 
     ``BODY.x``, ``.y``, ``.angle``, ``.vx``, ``.vy``, ``.omega``; ``POINT.x`` and so on;
@@ -44,8 +73,8 @@ def names_of(mechanism: "Mechanism") -> dict[str, int]:
     return {name: _order(name) for name in dict.fromkeys(found) if name not in taken}
 
 
-def _of(owners: object, words: tuple[str, ...]) -> list[str]:
-    return [f"{owner}.{word}" for owner in owners for word in words]  # type: ignore[attr-defined]
+def _of(owners: Iterable[str], words: tuple[str, ...]) -> list[str]:
+    return [f"{owner}.{word}" for owner in owners for word in words]
 
 
 def _order(name: str) -> int:

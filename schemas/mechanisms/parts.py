@@ -87,6 +87,10 @@ Joint = Annotated[Revolute | Prismatic | Welded | Floating, Field(discriminator=
 
 
 class Loop(Posted):
-    """A pin between two places that closes a loop of bodies."""
+    """A pin between two places that closes a loop of bodies.
+
+    Its force, ``loop.NAME.x`` and ``.y`` in the world's frame, acts on the second place's body, and
+    the opposite on that of the first.
+    """
 
     between: list[Place] = Field(min_length=2, max_length=2)

@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from footfall import errors
     from footfall.client import Client, Job
     from footfall.curves import Curve, Curves
-    from footfall.local import solve
-    from footfall.report import render, render_svg
-    from footfall.result import NodeValues, PhaseResult, Result
+    from footfall.local import simulate, solve
+    from footfall.report import render, render_motion, render_svg
+    from footfall.result import NodeValues, PhaseResult, Result, SimulationResult
     from footfall.sse import Event
     from footfall.sweeps import Sweep
     from footfall.transport import Retries
@@ -33,10 +33,13 @@ __all__ = [
     "PhaseResult",
     "Result",
     "Retries",
+    "SimulationResult",
     "Sweep",
     "errors",
     "render",
+    "render_motion",
     "render_svg",
+    "simulate",
     "solve",
 ]
 
@@ -50,9 +53,12 @@ _HOMES = {
     "PhaseResult": "result",
     "Result": "result",
     "Retries": "transport",
+    "SimulationResult": "result",
     "Sweep": "sweeps",
     "render": "report",
+    "render_motion": "report",
     "render_svg": "report",
+    "simulate": "local",
     "solve": "local",
 }
 

@@ -10,7 +10,7 @@ import httpx
 import numpy as np
 
 from footfall.curves import Floats
-from footfall.documents import Problem, read_problem
+from footfall.documents import Problem, is_simulation, read_problem
 from footfall.errors import (
     BadProblem,
     BadReply,
@@ -21,7 +21,7 @@ from footfall.errors import (
     WaitTimeout,
     read_issues,
 )
-from footfall.result import Result
+from footfall.result import Result, read_result
 from footfall.sse import Event, parse
 from footfall.sweeps import SweepCalls
 from footfall.transport import Retries, Transport, encoded
@@ -48,6 +48,7 @@ class Job:
     progress: dict[str, Any] | None = None
     timings: dict[str, float | None] = field(default_factory=dict)
     error: dict[str, Any] | None = None
+    kind: str = "solve"
     links: dict[str, str] = field(default_factory=dict)
     document: dict[str, Any] = field(default_factory=dict, repr=False)
 
@@ -67,7 +68,7 @@ class Job:
 
 
 class Client(SweepCalls):
-    """Talks to a service: submit problems, follow jobs, fetch results.
+    """Talks to a service: submit problems and simulations, follow jobs, fetch results.
 
     A connection that breaks is tried again, as is a reply of 429 or 503; a submission carries an
     idempotency key, so that trying again never makes a second job.
@@ -129,18 +130,26 @@ class Client(SweepCalls):
         body = encoded(read_problem(problem))
         return Job.read(self._transport.post_once("/v1/jobs", body, idempotency_key))
 
+    def simulate(self, simulation: Problem, *, idempotency_key: str | None = None) -> Job:
+        """Queue a simulation: a dict, or the path of a JSON file. The rest is as for problems.
+
+        ``wait`` then gives a ``SimulationResult``. Raises ``BadProblem`` with every issue.
+        """
+        body = encoded(read_problem(simulation))
+        return Job.read(self._transport.post_once("/v1/simulations", body, idempotency_key))
+
     def validate(self, problem: Problem) -> list[Issue]:
-        """What is wrong with a problem; nothing is stored. An empty list: it is fine."""
+        """What is wrong with a problem or simulation; nothing is stored. Empty: it is fine."""
         return self.check(problem)[0]
 
     def check(self, problem: Problem) -> tuple[list[Issue], list[str]]:
-        """What is wrong with a problem; and warnings about one that is fine."""
+        """What is wrong with a problem or simulation; and warnings about one that is fine."""
         query = {"validate_only": "true"}
+        document = read_problem(problem)
+        path = "/v1/simulations" if is_simulation(document) else "/v1/jobs"
         try:
-            body = encoded(read_problem(problem))
-            said = self._transport.json(
-                "POST", "/v1/jobs", content=body, headers=_JSON, params=query
-            )
+            body = encoded(document)
+            said = self._transport.json("POST", path, content=body, headers=_JSON, params=query)
         except BadProblem as error:
             return error.issues, []
         return [], list(said.get("warnings", []))
@@ -149,9 +158,12 @@ class Client(SweepCalls):
         """How a job is doing."""
         return self._job("GET", f"/v1/jobs/{job_id}")
 
-    def jobs(self, *, status: str | None = None, name: str | None = None) -> Iterator[Job]:
-        """Your jobs, newest first, page by page as you go on."""
-        query = {key: value for key, value in (("status", status), ("name", name)) if value}
+    def jobs(
+        self, *, status: str | None = None, name: str | None = None, kind: str | None = None
+    ) -> Iterator[Job]:
+        """Your jobs, newest first, page by page as you go on; of a kind "solve", "simulation"."""
+        asked = {"status": status, "name": name, "kind": kind}
+        query = {key: value for key, value in asked.items() if value}
         while True:
             page = self._transport.json("GET", "/v1/jobs", params=query)
             yield from map(Job.read, page["jobs"])
@@ -238,7 +250,7 @@ class Client(SweepCalls):
 
     def result(self, job_id: str) -> Result:
         """The result of a job that has ended, also of a cancelled one that got so far."""
-        return Result(self._transport.json("GET", f"/v1/jobs/{job_id}/result"))
+        return read_result(self._transport.json("GET", f"/v1/jobs/{job_id}/result"))
 
     def trajectory(
         self,

@@ -22,6 +22,11 @@ def read_problem(source: Problem) -> dict[str, Any]:
     return dict(source) if isinstance(source, Mapping) else read_json(source)
 
 
+def is_simulation(document: Mapping[str, Any]) -> bool:
+    """Whether a document is a simulation: it has a system of its own, and no phases."""
+    return "system" in document and "phases" not in document
+
+
 def read_json(path: str | Path) -> dict[str, Any]:
     """The object in a JSON file, or on standard input for ``-``.
 

@@ -1,4 +1,4 @@
-"""The one door to the server packages: solving in this process, and what a service is made of.
+"""The one door to the server packages: work in this process, and what a service is made of.
 
 Everything of the server is imported inside functions, and where it is not installed the error
 says what to install.
@@ -9,10 +9,10 @@ from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from typing import Any, NoReturn
 
-from footfall.documents import Problem
+from footfall.documents import Problem, is_simulation
 from footfall.documents import read_problem as read_document
 from footfall.errors import BadProblem, EngineFault, Issue, MissingServer, ServeFailed
-from footfall.result import Result
+from footfall.result import Result, SimulationResult
 from footfall.sse import Event
 
 _SERVER = frozenset({"api", "worker", "solver", "schemas", "store", "examples"})
@@ -49,20 +49,60 @@ def solve(
     """
     document = read_document(problem)
     with _needs("worker", "solving in this process"), _translated():
-        from schemas.reading import read_problem
         from solver import solve as engine
 
-        options: dict[str, Any] = {}
-        if on_event is not None:
-            options["on_event"] = lambda event: on_event(_event(event))
-        if should_stop is not None:
-            options["should_stop"] = should_stop
-        solution = engine(read_problem(document, _inline()), **options)
+        solution = engine(_read(document), **_options(on_event, should_stop))
     return Result(solution.model_dump(mode="json"))
 
 
+def simulate(
+    simulation: Problem,
+    *,
+    on_event: Callable[[Event], object] | None = None,
+    should_stop: Callable[[], bool] | None = None,
+) -> SimulationResult:
+    """Simulate in this process, without a service.
+
+    Parameters
+    ----------
+    simulation : dict, str or Path
+        The simulation, or the path of a JSON file that holds it.
+    on_event, should_stop : callable, optional
+        As for ``solve``; asked and told after some steps.
+
+    Returns
+    -------
+    SimulationResult
+        However the motion ended; ``result.status`` says how.
+
+    Raises
+    ------
+    BadProblem
+        With every issue of the simulation.
+    BadFile, MissingServer, EngineFault
+        See ``footfall.errors``.
+    """
+    document = read_document(simulation)
+    with _needs("worker", "simulating in this process"), _translated():
+        from solver.simulation import simulate as engine
+
+        result = engine(_read_simulation(document), **_options(on_event, should_stop))
+    return SimulationResult(result.model_dump(mode="json"))
+
+
+def _options(
+    on_event: Callable[[Event], object] | None, should_stop: Callable[[], bool] | None
+) -> dict[str, Any]:
+    options: dict[str, Any] = {}
+    if on_event is not None:
+        options["on_event"] = lambda event: on_event(_event(event))
+    if should_stop is not None:
+        options["should_stop"] = should_stop
+    return options
+
+
 def validate(problem: Problem) -> list[Issue]:
-    """What is wrong with a problem, checked in this process; an empty list: it is fine.
+    """What is wrong with a problem or simulation, checked here; an empty list: it is fine.
 
     What only the built model can tell (a NaN at the guess) shows when it is solved.
     """
@@ -70,24 +110,42 @@ def validate(problem: Problem) -> list[Issue]:
 
 
 def check(problem: Problem) -> tuple[list[Issue], list[str]]:
-    """What is wrong with a problem; and warnings about one that is fine."""
+    """What is wrong with a problem or simulation; and warnings about one that is fine."""
     document = read_document(problem)
     with _needs("worker", "checking a problem in this process"):
-        from schemas.reading import read_problem
         from schemas.remarks import remarks
 
         try:
             with _translated():
-                return [], list(remarks(read_problem(document, _inline())))
+                if is_simulation(document):
+                    _read_simulation(document)
+                    return [], []
+                return [], list(remarks(_read(document)))
         except BadProblem as error:
             return error.issues, []
 
 
-def _inline() -> Callable[[dict[str, Any]], dict[str, Any]]:
-    """What puts in the systems that a problem names; jobs are at their service alone."""
+def _read(document: dict[str, Any]) -> Any:
+    from schemas.inlining import inlined
+    from schemas.reading import read_problem
+
+    sources = _sources()
+    return read_problem(document, lambda raw: inlined(raw, sources))
+
+
+def _read_simulation(document: dict[str, Any]) -> Any:
+    from schemas.inlining import inlined_simulation
+    from schemas.simulations import read_simulation
+
+    sources = _sources()
+    return read_simulation(document, lambda raw: inlined_simulation(raw, sources))
+
+
+def _sources() -> Any:
+    """Where the names in a document lead here; jobs are at their service alone."""
     import examples as gallery
     from schemas.errors import UnknownJob
-    from schemas.inlining import Sources, inlined
+    from schemas.inlining import Sources
 
     def result(_: str) -> NoReturn:
         raise UnknownJob(
@@ -95,16 +153,17 @@ def _inline() -> Callable[[dict[str, Any]], dict[str, Any]]:
             "Solve it through the service that has the job, with --server URL.",
         )
 
-    sources = Sources(gallery.names, gallery.load, result)
-    return lambda document: inlined(document, sources)
+    names = [*gallery.names(), *gallery.simulations()]
+    return Sources(lambda: names, gallery.load, result)
 
 
 def examples() -> dict[str, dict[str, Any]]:
-    """The gallery as it is installed here: name -> problem."""
+    """The gallery as it is installed here: name -> problem or simulation."""
     with _needs("worker", "the gallery without a service"):
         import examples as gallery
 
-        return {name: gallery.load(name) for name in gallery.names()}
+        names = [*gallery.names(), *gallery.simulations()]
+        return {name: gallery.load(name) for name in names}
 
 
 def queue_binary() -> Path:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from footfall.curves import Curve, Curves, Floats
 from footfall.documents import read_json
 from footfall.errors import BadFile
+from footfall.simulated import summarize_simulation
 from footfall.summary import summarize
 
 
@@ -78,18 +79,22 @@ class Result:
     one of a named phase. ``document`` is the JSON as the service sent it.
     """
 
+    needed = frozenset({"status", "phases", "certificate", "mesh_refinement"})
+    """Fields without which a document is no such result."""
+
     def __init__(self, document: dict[str, Any]) -> None:
         self.document = document
 
-    @classmethod
-    def load(cls, path: str | Path) -> "Result":
+    @staticmethod
+    def load(path: str | Path) -> "Result":
         """Read a result that ``save`` or ``footfall result`` wrote. Raises ``BadFile``."""
         document = read_json(path)
-        missing = {"status", "phases", "certificate", "mesh_refinement"} - document.keys()
+        found = read_result(document)
+        missing = found.needed - document.keys()
         if missing:
             hint = "A result comes from 'footfall solve --output' or 'footfall result'."
             raise BadFile(f"{path} holds no result: {', '.join(sorted(missing))} missing.", hint)
-        return cls(document)
+        return found
 
     def save(self, path: str | Path) -> None:
         """Write the result as JSON."""
@@ -162,6 +167,54 @@ class Result:
             names = ", ".join(self.phase) or "none at all"
             raise KeyError(f"the result has not one phase but {names}; use result.phase[name]")
         return self.phases[0]
+
+
+class SimulationResult(Result):
+    """A finished simulation: trajectories as any result has them, and what happened on the way.
+
+    It has no objective and no mesh, and nobody certifies it: nothing was optimized.
+    """
+
+    needed = frozenset({"status", "phases", "events"})
+
+    @property
+    def converged(self) -> bool:
+        """Whether it went on to its end, or to an event that was to end it."""
+        return self.status in ("finished", "stopped")
+
+    @property
+    def objective(self) -> float | None:
+        """None: nothing was minimized."""
+        return None
+
+    @property
+    def certificate(self) -> dict[str, Any]:
+        """None was made."""
+        return {"verdict": "not_checked", "checks": []}
+
+    @property
+    def mesh(self) -> list[dict[str, Any]]:
+        """Empty: a simulation has steps, and no mesh."""
+        return []
+
+    @property
+    def events(self) -> list[dict[str, Any]]:
+        """Impacts, lift-offs and other events in their order, as in the JSON."""
+        events: list[dict[str, Any]] = self.document["events"]
+        return events
+
+    def summary(self) -> str:
+        """The result in a few lines of plain text."""
+        return summarize_simulation(self.document)
+
+    def __repr__(self) -> str:
+        return f"SimulationResult({self.name!r}, {self.status}, {len(self.events)} events)"
+
+
+def read_result(document: dict[str, Any]) -> Result:
+    """The result in a document, of a solve or of a simulation."""
+    simulated = document.get("kind") == "simulation"
+    return SimulationResult(document) if simulated else Result(document)
 
 
 def _node_values(group: Mapping[str, Any]) -> NodeValues:

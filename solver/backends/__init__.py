@@ -2,7 +2,16 @@
 
 from collections.abc import Mapping
 
-from solver.backends.base import DEFAULT, Backend, NlpStatus, Outcome, Strategy
+from solver.backends.base import (
+    ADAPTIVE,
+    DEFAULT,
+    FREE,
+    RESCALED,
+    Backend,
+    NlpStatus,
+    Outcome,
+    Strategy,
+)
 from solver.backends.fatrop import Fatrop
 from solver.backends.ipopt import Ipopt
 from solver.backends.sqp import Sqp
@@ -24,9 +33,12 @@ def make_backend(name: str) -> Backend:
 
 
 __all__ = [
+    "ADAPTIVE",
     "BACKENDS",
     "DEFAULT",
     "FEASIBLE",
+    "FREE",
+    "RESCALED",
     "Backend",
     "Iterate",
     "NlpStatus",

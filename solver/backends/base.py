@@ -41,14 +41,20 @@ class Strategy:
 
     ``adaptive``: choose the barrier parameter anew at each iteration, which helps hard problems
     and hurts some easy ones. ``rescaled``: divide rows and objective by their slopes at the start.
+    ``free``: adaptive, and never held at one parameter; starts near its limits. For objectives
+    that are linear in slacks.
     """
 
     name: str = "default"
     adaptive: bool = False
     rescaled: bool = False
+    free: bool = False
 
 
 DEFAULT = Strategy()
+ADAPTIVE = Strategy("adaptive barrier", adaptive=True)
+RESCALED = Strategy("rescaled", rescaled=True)
+FREE = Strategy("free barrier", adaptive=True, free=True)
 
 
 @dataclass(frozen=True, slots=True)

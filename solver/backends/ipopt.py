@@ -102,6 +102,14 @@ def _switches(strategy: Strategy) -> dict[str, Any]:
     options: dict[str, Any] = {}
     if strategy.adaptive:
         options["ipopt.mu_strategy"] = "adaptive"
+    if strategy.free:
+        # From a stage's solution or a coarser mesh; the usual pushes leave both, and 1e-6 is so
+        # near that slacks stay where they are.
+        options |= {
+            "ipopt.adaptive_mu_globalization": "never-monotone-mode",
+            "ipopt.bound_push": 1e-4,
+            "ipopt.bound_frac": 1e-4,
+        }
     if strategy.rescaled:
         # Slopes above 1 are divided down to it; by default, those above 100.
         options["ipopt.nlp_scaling_max_gradient"] = 1.0

@@ -110,5 +110,5 @@ def _minimum(group: Sequence[tuple[int, Solution]]) -> Minimum:
         verdict=solution.certificate.verdict,
         seeds=sorted(seed for seed, _ in group),
         static=solution.static,
-        phases=solution.phases,
+        phases=[phase.model_copy(update={"frames": None}) for phase in solution.phases],
     )

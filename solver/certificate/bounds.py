@@ -3,7 +3,7 @@
 import numpy as np
 
 from schemas import resolve
-from schemas.expressions import Name, split
+from schemas.expressions import Name, stem
 from schemas.results import Check
 from solver.certificate.case import Case, PhaseCase
 from solver.certificate.findings import Finding, judge, violation, worst_sample
@@ -41,7 +41,7 @@ def static_bounds(case: Case) -> Check | None:
 def _outside(phase: PhaseCase, *, of_controls: bool) -> list[Finding]:
     """A finding for each bound, be it on one of the controls or not."""
     controls = phase.spec.system.control_names
-    names = [name for name in phase.spec.bounds if (split(name).base in controls) == of_controls]
+    names = [name for name in phase.spec.bounds if (stem(name)[1] in controls) == of_controls]
     return [
         worst_sample(
             phase.name,

@@ -9,10 +9,13 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from schemas import resolve
-from schemas.expressions import Tree
+from schemas.expressions import Name, Tree
+from schemas.mechanisms import Mechanism
 from schemas.phases import Phase
 from schemas.problem import Problem
 from schemas.results import PhaseResult
+from schemas.urdf import Urdf
+from solver.certificate.bodies import Bodies, Evaluate
 from solver.certificate.clock import ENDLESS, Clock
 from solver.lowering import lower
 from solver.lowering.form import Form
@@ -27,7 +30,6 @@ from solver.numeric import (
     departure,
     dynamics,
     integrate,
-    named,
 )
 
 COARSE_TOLERANCE = 1e-3
@@ -75,9 +77,25 @@ class PhaseCase:
         return resolve.parameters(self.spec.system)
 
     @functools.cached_property
-    def dynamics(self) -> Along:
+    def bodies(self) -> Bodies | None:
+        """The bodies of a mechanism, read anew: nothing of the solver's mechanics is in them."""
+        system = self.spec.system
+        if isinstance(system, Mechanism | Urdf):
+            return Bodies.of(self.form, system, self.statics)
+        return None
+
+    @functools.cached_property
+    def dynamics(self) -> Along | Bodies:
         """The derivatives of the states; not for closed forms."""
-        return dynamics(self.form, self.given)
+        return self.bodies or dynamics(self.form, self.given)
+
+    def expressions(self, trees: Sequence[Tree]) -> Evaluate:
+        """Expressions along the phase; what a mechanism names is computed from its bodies."""
+
+        def of_form(trees: Sequence[Tree]) -> Evaluate:
+            return along(self.form, trees, self.given)
+
+        return self.bodies.expressions(trees, of_form) if self.bodies else of_form(trees)
 
     @functools.cached_property
     def samples(self) -> Samples:
@@ -92,13 +110,13 @@ class PhaseCase:
     def sampled(self, trees: Sequence[Tree]) -> Array:
         """Expressions at the samples, (trees, samples)."""
         at = self.samples
-        return along(self.form, trees, self.given)(at.t, at.x, at.u)
+        return self.expressions(trees)(at.t, at.x, at.u)
 
     @functools.cached_property
     def integrals(self) -> dict[str, Quadrature]:
         """The named integrals that matter, over the published curves."""
         trees = [self.spec.integrals[name].tree for name in self.judged]
-        integrand = along(self.form, trees, self.given)
+        integrand = self.expressions(trees)
 
         def timed(at: Samples) -> Array:
             self.clock.look()
@@ -114,7 +132,7 @@ class PhaseCase:
         form, at = self.form, self.samples
         names = ["t", *form.states, *form.controls, *form.definitions, *form.algebraic]
         x, u = at.x[:, [0, -1]], at.u[:, [0, -1]]
-        values = named(form, names, self.given)(at.t[[0, -1]], x, u)
+        values = self.expressions([Name(name) for name in names])(at.t[[0, -1]], x, u)
         return {
             f"{side}.{name}": float(value)
             for side, column in zip(("initial", "final"), values.T, strict=True)

@@ -14,6 +14,7 @@ from solver.certificate.constraints import boundary_constraints, linkages, path_
 from solver.certificate.continuity import continuity
 from solver.certificate.dynamics import interval_defect
 from solver.certificate.ends import end_values, time
+from solver.certificate.held import contacts_and_loops
 from solver.certificate.objective import objective as recomputed
 from solver.certificate.rollout import rollout
 from solver.numeric import MalformedCurves
@@ -26,6 +27,7 @@ JUDGED: tuple[Callable[[Case], Check | None], ...] = (
     state_bounds,
     control_overshoot,
     path_constraints,
+    contacts_and_loops,
     boundary_constraints,
     linkages,
     static_bounds,

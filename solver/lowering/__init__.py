@@ -4,9 +4,9 @@ Derivatives become states, chains of integrators or algebraic unknowns; second-o
 first-order ones; absolute values become slacks or smooth functions.
 """
 
-from solver.lowering.form import Form, Unknowns
+from solver.lowering.form import Form, Holonomic, Unknowns
 from solver.lowering.lower import lower, lower_native
 from solver.lowering.slacks import Slacks, slacks
 from solver.lowering.smoothed import smoothed
 
-__all__ = ["Form", "Slacks", "Unknowns", "lower", "lower_native", "slacks", "smoothed"]
+__all__ = ["Form", "Holonomic", "Slacks", "Unknowns", "lower", "lower_native", "slacks", "smoothed"]

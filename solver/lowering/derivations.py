@@ -7,6 +7,8 @@ from schemas.expressions import Name, Number, Tree, derivative, names_in
 from schemas.expressions.differentiation import ONE, total_derivative
 from solver.lowering.pieces import Cutter
 
+_ENDS = ("initial.", "final.")
+
 
 class CannotDerive(ValueError):
     """A name that is defined by itself, or that has no such derivative."""
@@ -91,7 +93,11 @@ class Derivations:
 
     def is_leaf(self, name: str) -> bool:
         """Whether a name needs no tree of its own."""
-        return name == "t" or name in self._fixed or "." in name or self._varies(name)
+        return name == "t" or self._settled(name) or self._varies(name)
+
+    def _settled(self, name: str) -> bool:
+        """Whether a name does not change over time: a constant, or a value at an end."""
+        return name in self._fixed or name.startswith(_ENDS)
 
     def _needed(self, name: str) -> list[str]:
         """What must be done before ``name`` is; its tree is made as soon as that is possible."""
@@ -115,7 +121,7 @@ class Derivations:
         def rate(base: str) -> Tree | None:
             if base == "t":
                 return ONE
-            if base in self._fixed or "." in base:
+            if self._settled(base):
                 return None
             following = derivative(base)
             if self.is_leaf(following):

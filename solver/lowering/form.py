@@ -20,6 +20,26 @@ class Unknowns:
 
 
 @dataclass(frozen=True, slots=True)
+class Holonomic:
+    """What a contact or a closed loop keeps at zero: definitions of a form, by name.
+
+    ``place`` over coordinates alone, None where there is no such function (rolling on curved
+    ground); ``rate`` its rate, linear in the velocities. ``anchored`` places are kept at zero,
+    others where the phase starts.
+    """
+
+    label: str
+    place: str | None
+    rate: str
+    anchored: bool = True
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The definitions behind it."""
+        return (self.rate,) if self.place is None else (self.place, self.rate)
+
+
+@dataclass(frozen=True, slots=True)
 class Form:
     """A phase's motion, all trees over names of this form, ``t`` and the problem's statics.
 
@@ -47,6 +67,9 @@ class Form:
         it has to make zero, label -> tree.
     publish
         Group of a result -> the series that users see in it.
+    holonomic
+        What contacts and loops hold. The unknowns' rows keep its acceleration at zero; methods
+        keep it from drifting (``solver.model.drift``).
     """
 
     constants: Mapping[str, float]
@@ -59,6 +82,7 @@ class Form:
     natives: tuple[str, ...] = ()
     residuals: Mapping[str, Tree] = field(default_factory=dict)
     publish: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    holonomic: tuple[Holonomic, ...] = ()
 
     @property
     def algebraic(self) -> tuple[str, ...]:

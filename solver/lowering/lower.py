@@ -5,10 +5,12 @@ from itertools import pairwise
 
 from schemas import resolve
 from schemas.errors import InvalidModel, Issue
-from schemas.expressions import Call, Name, Tree, derivative, names_in, split
+from schemas.expressions import Call, Name, Tree, derivative, names_in, stem
+from schemas.mechanisms import Mechanism
 from schemas.pointers import pointer
 from schemas.problem import Problem
 from schemas.systems import SecondOrder, System
+from schemas.urdf import Urdf
 from solver.lowering.derivations import CannotDerive, Derivations
 from solver.lowering.form import Form, Unknowns
 from solver.lowering.motion import Motion, motion_of
@@ -56,15 +58,16 @@ def _lower(problem: Problem, index: int) -> Form:
     constants = resolve.parameters(system)
     motion = motion_of(system)
     states, controls = system.state_names, system.control_names
+    free, known, found = {*controls, *motion.forces}, {*states}, {*motion.implicit}
 
     def is_leaf(name: str) -> bool:
-        _, order, base = split(name)
-        unknown = base in motion.implicit and order > 1
-        return name in states or base in controls or unknown
+        order, base = stem(name)
+        return name in known or base in free or (base in found and order > 1)
 
     derivations = Derivations(motion.trees, constants, problem.static, is_leaf)
     needed = [*used_series(problem, index), *_names(motion.derivatives.values())]
     needed += _names(motion.flow.values())
+    needed += [name for row in motion.holonomic for name in row.names]
     derivations.demand(needed)
     groups = _unknowns(derivations, motion, needed)
     needed += _names(row for group in groups for row in group.residuals)
@@ -78,17 +81,18 @@ def _lower(problem: Problem, index: int) -> Form:
         derivatives=_first_order(motion, definitions, chains),
         unknowns=groups,
         flow=motion.flow,
-        publish=_publish(system, chains),
+        publish=_publish(system, chains) | _forces(motion),
+        holonomic=motion.holonomic,
     )
 
 
 def _lower_native(problem: Problem, index: int) -> Form:
     system = problem.phases[index].system
-    if not isinstance(system, SecondOrder):
+    if not isinstance(system, SecondOrder | Mechanism | Urdf):
         raise CannotDerive("a first-order system has no native form")
     constants = resolve.parameters(system)
     motion = motion_of(system)
-    q, u = system.coordinates, system.controls
+    q, u = system.coordinates, system.control_names
     states, controls = _orders(q, range(3)), _orders(u, range(2))
     natives = (*_orders(q, range(3, 5)), *_orders(u, [2]))
     leaves = {*states, *controls, *natives}
@@ -126,31 +130,41 @@ def _unknowns(
     if not motion.implicit:
         return ()
     groups = []
-    highest = _highest(motion.implicit, derivations.all_names(needed))
+    highest = _settled(motion, derivations.all_names(needed))
     for order in range(2, highest + 1):
         rows = [derivative(row, order - 2) for row in motion.rows]
         derivations.demand(rows)
         trees = tuple(derivations.trees(rows))
-        inside = _highest(motion.implicit, derivations.all_names(_names(trees)))
+        inside = _settled(motion, derivations.all_names(_names(trees)))
         if inside > order:
             raise CannotDerive(f"the residuals need derivatives of order {inside - order + 2}")
-        names = _orders(motion.implicit, [order])
+        names = _orders(motion.implicit, [order]) + _orders(motion.forces, [order - 2])
         groups.append(Unknowns(names, trees, tuple(_label(row) for row in rows)))
     return tuple(groups)
 
 
 def _label(row: str) -> str:
-    _, order, base = split(row)
-    return derivative(f"dynamics {base.removeprefix('#')}", order)
+    return row.replace("#", "", 1)
 
 
-def _highest(bases: Sequence[str], names: Iterable[str]) -> int:
-    return max((order for _, order, base in map(split, names) if base in bases), default=0)
+def _settled(motion: Motion, names: Iterable[str]) -> int:
+    """The highest order of accelerations that are needed; forces come with them."""
+    names = list(names)
+    return max(_highest(motion.implicit, names), 2 + _highest(motion.forces, names, default=-2))
+
+
+def _highest(bases: Iterable[str], names: Iterable[str], default: int = 0) -> int:
+    wanted = set(bases)
+    return max((order for order, base in map(stem, names) if base in wanted), default=default)
 
 
 def _chains(controls: Sequence[str], names: Sequence[str]) -> list[tuple[str, ...]]:
     """For each control its derivatives, from none to the highest that is used."""
-    return [_orders([u], range(_highest([u], names) + 1)) for u in controls]
+    highest = dict.fromkeys(controls, 0)
+    for order, base in map(stem, dict.fromkeys(names)):
+        if order > highest.get(base, order):
+            highest[base] = order
+    return [_orders([u], range(order + 1)) for u, order in highest.items()]
 
 
 def _first_order(
@@ -175,6 +189,10 @@ def _residuals(motion: Motion, coordinates: Sequence[str]) -> dict[str, Tree]:
         f"dynamics {name}": Call("-", (Name(rate), motion.trees[rate]))
         for name, rate in accelerations.items()
     }
+
+
+def _forces(motion: Motion) -> dict[str, tuple[str, ...]]:
+    return {"forces": motion.forces} if motion.forces else {}
 
 
 def _publish(system: System, chains: Iterable[tuple[str, ...]]) -> dict[str, tuple[str, ...]]:

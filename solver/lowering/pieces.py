@@ -21,8 +21,8 @@ class Cutter:
 
     def __init__(self, name: str, constants: Mapping[str, float]) -> None:
         self.pieces: dict[str, Tree] = {}
-        _, order, base = split(name)
-        self._name = f"{base}#{order}_"
+        prefix, order, base = split(name)
+        self._name = f"{prefix}{base}#{order}_"
         self._constants = constants
 
     def cut(self, tree: Tree) -> Tree:

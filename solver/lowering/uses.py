@@ -42,9 +42,9 @@ def _at_ends(problem: Problem, phase: Phase) -> Iterator[str]:
 
 def _ends_of(tree: Tree, prefixes: tuple[str, ...] | list[str]) -> Iterator[str]:
     for name in _names(tree):
-        prefix, _, series = name.rpartition(".")
-        if prefix in prefixes:
-            yield series
+        for prefix in prefixes:
+            if name.startswith(f"{prefix}."):
+                yield name[len(prefix) + 1 :]
 
 
 def _names(tree: Tree) -> Iterator[str]:

@@ -1,8 +1,9 @@
 """Segment polynomials in powers of the local time, as the Chebyshev series that are published."""
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import comb
 
 from footfall.curves import fit
 
@@ -26,7 +27,8 @@ def corners(nodes: Array) -> Array:
     """
     degree = len(nodes) - 1
     which = np.arange(degree + 1)
-    basis = comb(degree, which) * nodes[:, None] ** which * (1 - nodes[:, None]) ** which[::-1]
+    count = np.array([math.comb(degree, one) for one in which], dtype=float)
+    basis = count * nodes[:, None] ** which * (1 - nodes[:, None]) ** which[::-1]
     return np.asarray(np.linalg.inv(basis))
 
 

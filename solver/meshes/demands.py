@@ -18,6 +18,9 @@ _WITHIN = 0.1
 _STEADY = 0.2
 """How little of what integrals may be off an objective still falls that has settled."""
 
+_FELL = 0.5
+"""What integrals are off by falls below that from mesh to mesh, where it depends on the mesh."""
+
 _FEW = 40
 """Segments: where the parts would add more than these, and more than there are, each gets three."""
 
@@ -29,17 +32,53 @@ def demands(problem: Problem, solved: Sequence[SolvedMesh]) -> list[Counts]:
     limits between the nodes, how far the method's own sums are from the integrals, and how much
     the objective still changes while controls bend or jump inside of segments.
     """
-    last, allowed = solved[-1], 0.5 * certificate_tolerance(problem)
-    limit = _WITHIN * problem.certificate.constraint_tolerance
+    last, allowed, limit = solved[-1], _allowed(problem), _limit(problem)
     wanted = [np.ones(len(errors), dtype=int) for errors in last.errors]
     if last.largest_excess > limit:
         wanted = _largest(problem, wanted, [excess / limit for excess in last.excess])
     if last.integral_error > allowed:
-        wanted = _largest(problem, wanted, _shares(last.integral_errors, allowed))
+        wanted = _largest(problem, wanted, _worst(shares(problem, solved)))
     if not _accurate(problem, last) or _steady(problem, solved, allowed):
         return _movable(last, wanted)
     bent = [(_bent(result) / SEAM) ** 2 for result in last.phases]
     return _movable(last, _largest(problem, wanted, bent))
+
+
+def honest(problem: Problem, mesh: SolvedMesh) -> bool:
+    """Whether the objective is what it seems: curves within limits, sums those of the curves."""
+    within = mesh.largest_excess <= _limit(problem)
+    return within and mesh.integral_error <= _allowed(problem)
+
+
+def shares(problem: Problem, solved: Sequence[SolvedMesh]) -> list[Array]:
+    """Each segment's error of the integrals over its equal part of the allowed, per phase.
+
+    Zero where no cut makes them smaller.
+    """
+    errors = solved[-1].integral_errors
+    count = sum(len(own) for own in errors)
+    scale = 0.0 if _left_over(problem, solved) else count / _allowed(problem)
+    return [_known(own * scale) for own in errors]
+
+
+def _left_over(problem: Problem, solved: Sequence[SolvedMesh]) -> bool:
+    """Whether integrals are off by more than allowed, but by what the solver leaves on segments.
+
+    Slacks of absolute values are an example: off by as much on short segments as on long ones.
+    """
+    if len(solved) < 2:
+        return False
+    before, last = (mesh.integral_error for mesh in solved[-2:])
+    count = sum(len(own) for own in solved[-1].integral_errors)
+    return _allowed(problem) < last <= count * problem.solver.tolerance and last >= _FELL * before
+
+
+def _allowed(problem: Problem) -> float:
+    return 0.5 * certificate_tolerance(problem)
+
+
+def _limit(problem: Problem) -> float:
+    return _WITHIN * problem.certificate.constraint_tolerance
 
 
 def _accurate(problem: Problem, mesh: SolvedMesh) -> bool:
@@ -73,17 +112,16 @@ def _known(ratios: Array) -> Array:
     return np.nan_to_num(ratios, nan=np.inf, posinf=np.inf)
 
 
-def _shares(errors: Sequence[Array], allowed: float) -> list[Array]:
-    """The errors of the segments that make up nearly all, over what each may have of the allowed.
+def _worst(ratios: Sequence[Array]) -> list[Array]:
+    """The shares of the segments that make up nearly all, zero for the others.
 
-    Zero for the others, which together are off by half of the allowed or by a tenth of all.
+    These together are off by half of the allowed or by a tenth of all.
     """
-    flat = _known(np.concatenate(errors))
+    flat = np.concatenate(ratios)
     order = np.argsort(flat)
-    small = np.cumsum(flat[order]) <= max(0.5 * allowed, 0.1 * float(flat.sum()))
-    ratios = flat * (len(flat) / allowed)
-    ratios[order[small]] = 0.0
-    return np.split(ratios, np.cumsum([len(own) for own in errors])[:-1])
+    small = np.cumsum(flat[order]) <= max(0.5 * len(flat), 0.1 * float(flat.sum()))
+    flat[order[small]] = 0.0
+    return np.split(flat, np.cumsum([len(own) for own in ratios])[:-1])
 
 
 def _bent(result: PhaseResult) -> Array:

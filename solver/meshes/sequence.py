@@ -3,11 +3,13 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from schemas.events import MeshSolved
 from schemas.problem import Problem
 from schemas.results import finite
 from solver.backends import NlpStatus
-from solver.meshes.demands import demands
+from solver.meshes.demands import demands, honest, shares
 from solver.meshes.solve_mesh import SolvedMesh, Start, solve_mesh
 from solver.model import Model
 from solver.refinement.curves import decay, seams
@@ -17,7 +19,8 @@ from solver.run import Run
 from solver.transcribe import Setting
 
 _LOST = 0.1
-"""A mesh is lost whose objective is so much higher than that of a coarser one, relative."""
+"""A mesh is lost whose objective is so much higher than that of a coarser one, relative, and
+higher than what the integrals of that one were off."""
 
 _RISES = 30
 """In tolerances: the same after an accurate mesh."""
@@ -58,16 +61,17 @@ def _not_lost(problem: Problem, mesh: SolvedMesh, before: Sequence[SolvedMesh]) 
     """The mesh; not optimal where it is worse than a coarser one from which it started.
 
     The coarser optimum is nearly feasible on the finer mesh, which can only lower it; very nearly
-    where the coarser mesh is accurate. Where many orders of magnitude meet, as with fourth
-    derivatives on very short segments, a solver may still end elsewhere and call it optimal.
+    where the coarser mesh is accurate and its objective that of its curves. A solver may still end
+    elsewhere and call it optimal.
     """
     settings = problem.refinement
     if settings is None or not before or not mesh.optimal or not before[-1].optimal:
         return mesh
-    accurate = before[-1].max_error <= settings.tolerance
-    rise = min(_LOST, _RISES * settings.tolerance) if accurate else _LOST
-    least = before[-1].objective
-    if mesh.objective <= least + rise * (1 + abs(least)):
+    last = before[-1]
+    rise = _LOST + np.nan_to_num(last.integral_error, nan=np.inf)
+    if last.max_error <= settings.tolerance and honest(problem, last):
+        rise = min(_LOST, _RISES * settings.tolerance)
+    if mesh.objective <= last.objective + rise * (1 + abs(last.objective)):
         return mesh
     return replace(mesh, outcome=replace(mesh.outcome, status=NlpStatus.DIVERGED))
 
@@ -95,11 +99,12 @@ def _known(problem: Problem, solved: Sequence[SolvedMesh]) -> list[Meshed]:
     last = solved[-1]
     before = solved[-2].setting.meshes if len(solved) > 1 else [None] * len(last.phases)
     phases = []
-    for transcription, mesh, errors, least, result, old in zip(
+    for transcription, mesh, errors, least, own, result, old in zip(
         last.setting.transcriptions,
         last.setting.meshes,
         last.errors,
         demands(problem, solved),
+        shares(problem, solved),
         last.phases,
         before,
         strict=True,
@@ -109,7 +114,7 @@ def _known(problem: Problem, solved: Sequence[SolvedMesh]) -> list[Meshed]:
             continue
         rates = None if mesh.degrees is None else decay(result, mesh.degrees)
         phases.append(
-            Meshed(mesh, errors, transcription.error_order, seams(result), rates, old, least)
+            Meshed(mesh, errors, transcription.error_order, seams(result), rates, old, least, own)
         )
     return phases
 

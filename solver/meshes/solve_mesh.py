@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from schemas.events import StageStarted
 from schemas.problem import Problem
 from schemas.results import PhaseResult
-from solver.backends import NlpStatus, Outcome, Watch
+from solver.backends import DEFAULT, FREE, NlpStatus, Outcome, Watch
 from solver.diagnosis import check_start
 from solver.lowering.used import used_integrals
 from solver.model import Model
@@ -229,6 +229,8 @@ def solve_mesh(
             lambda note: run.on_event(StageStarted(stage="solve", note=note)),
             warm=start.warm,
             once=start.spare,
+            # An objective that is linear in slacks has kinks at every optimum: see docs/speed.md.
+            first=FREE if model.has_slacks else DEFAULT,
             limits=limits_of(built.transcribed.program) if problem.solver.portfolio else None,
         )
         findings = built.findings(won.outcome, run, start.number)
@@ -248,7 +250,8 @@ def _build(problem: Problem, model: Model, start: Start) -> _Built:
         names = [phase.name for phase in model.phases]
         warnings += unused_warnings(transcribed.program, task, names)
         warnings += scale_warnings(transcribed.program, task, names)
-    redundancy = find_redundancy(transcribed.program, scaling, task.nlp)
+    settled = [phase.settled for phase in model.phases]
+    redundancy = find_redundancy(transcribed.program, scaling, task.nlp, settled)
     reduced = task.without(redundancy)
     return _Built(
         problem, model, setting, transcribed, scaling, reduced, redundancy, warnings, began

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from schemas import resolve
 from schemas.expressions import Name, Tree
@@ -11,7 +12,12 @@ from schemas.problem import Problem
 from schemas.problem import Static as StaticSpec
 from schemas.values import Bound
 from solver.lowering import Form, Slacks, lower, lower_native, slacks
+from solver.model.implied import Implied, implied
 from solver.model.model import OPEN, Constraint, Interval, Model, Phase, Static
+from solver.model.resting import resting_rates, spare_velocities
+
+START = "start "
+"""In front of the label of a row that contacts or loops ask for at a phase's start."""
 
 
 def build_model(problem: Problem, native: Sequence[bool] | None = None) -> Model:
@@ -23,14 +29,42 @@ def build_model(problem: Problem, native: Sequence[bool] | None = None) -> Model
     native = native or [False] * len(forms)
     softened = problem.nonsmooth is not None and problem.nonsmooth.abs == "slack"
     phases = []
+    ends = implied(problem, forms)
     for index, (spec, chain) in enumerate(zip(problem.phases, forms, strict=True)):
         form = lower_native(problem, index) if native[index] else chain
         extra = slacks(problem, index) if softened else None
-        phases.append(_phase(spec, form, chain, extra, first=index == 0))
+        phase = _phase(spec, form, chain, extra, first=index == 0)
+        phases.append(_with_ends(phase, ends[index], list(problem.static)))
     objective = problem.objective.minimize.tree if problem.objective else None
-    statics = tuple(_static(name, spec) for name, spec in problem.static.items())
+    statics = tuple(read_static(name, spec) for name, spec in problem.static.items())
     linkages = tuple(_constraint("linkage", row, {}) for row in problem.linkages)
     return Model(tuple(phases), objective, statics, linkages)
+
+
+def _with_ends(phase: Phase, ends: Implied, statics: Sequence[str]) -> Phase:
+    """What contacts and loops hold at the start, and without what they decide."""
+    idle = {f"path {name}" for name in ends.idle}
+    phase = replace(
+        phase,
+        path=tuple(row for row in phase.path if row.label not in idle),
+        settled={f"path {name}": frozenset(where) for name, where in ends.settled.items()},
+    )
+    if not phase.form.holonomic:
+        return phase
+    rates = [one.rate for one in phase.form.holonomic if one.rate in ends.starts]
+    resting = resting_rates(phase.form, phase.initial, rates, statics)
+    spare = spare_velocities(phase.form, phase.final, statics)
+    zero = Interval(0.0, 0.0)
+    starts = [
+        Constraint(f"{START}{name}", Name(f"initial.{name}"), zero)
+        for name in ends.starts
+        if name not in resting
+    ]
+    return replace(
+        phase,
+        boundary=(*phase.boundary, *starts),
+        final={**phase.final, **{name: phase.bounds[name] for name in spare}},
+    )
 
 
 def _phase(spec: PhaseSpec, form: Form, chain: Form, extra: Slacks | None, *, first: bool) -> Phase:
@@ -119,7 +153,8 @@ def _constraint(kind: str, spec: ConstraintSpec, constants: Mapping[str, float])
     return Constraint(f"{kind} {spec.name}", spec.expression.tree, _interval(spec, constants))
 
 
-def _static(name: str, spec: StaticSpec) -> Static:
+def read_static(name: str, spec: StaticSpec) -> Static:
+    """A static with its limits, and its own guess or the middle of them."""
     limits = _interval(spec.bounds, {})
     if spec.guess is not None:
         return Static(name, limits, resolve.scalar(spec.guess, {}))

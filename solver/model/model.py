@@ -1,7 +1,7 @@
 """The model that the engine works on: numbers and typed trees, nothing of pydantic."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from schemas.expressions import Tree
@@ -61,7 +61,7 @@ class Phase:
     algebraic
         Names found at each node on its own: unknown accelerations, slacks.
     natives
-        Names that the method supplies along the phase without variables of their own.
+        Names that the method itself supplies along the phase.
     path, boundary
         Constraints along the phase and over its ends.
     held
@@ -70,6 +70,8 @@ class Phase:
         An interval for every state and control of the form.
     start
         None where the phase starts when the one before it ends.
+    settled
+        Labels of path constraints that others decide -> at which fractions of the phase.
     chain
         The motion in first-order form whatever the method: what results publish and the mesh
         error judges.
@@ -90,6 +92,7 @@ class Phase:
     end: Interval
     duration: Interval
     chain: Form
+    settled: Mapping[str, frozenset[float]] = field(default_factory=dict)
 
     @property
     def states(self) -> tuple[str, ...]:
@@ -115,3 +118,8 @@ class Model:
     objective: Tree | None
     statics: tuple[Static, ...] = ()
     linkages: tuple[Constraint, ...] = ()
+
+    @property
+    def has_slacks(self) -> bool:
+        """Whether slacks stand in for absolute values, min or max."""
+        return any(len(phase.algebraic) > len(phase.form.algebraic) for phase in self.phases)

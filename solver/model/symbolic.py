@@ -8,6 +8,7 @@ import casadi as ca
 from schemas.expressions import Tree
 from solver.expressions import SX, evaluate
 from solver.lowering import Unknowns
+from solver.model.drift import drift_names, drift_rates, held_values
 from solver.model.model import Constraint, Model, Phase
 
 
@@ -16,6 +17,7 @@ class Place:
     """A place in a phase in symbols.
 
     State (n_x,), control (n_u,), algebraic (n_z,) and native values (n_n,), time, statics (n_p,).
+    The algebraic values end with those against drift.
     """
 
     x: SX
@@ -35,6 +37,7 @@ class PhaseFunctions:
     """Functions of a place: derivatives (n_x,), integrands (n_q,), path values (n_c,).
 
     ``flow`` gives the states (n_x,) of a closed form from natives, time and statics.
+    ``held`` gives what contacts and loops hold (``solver.model.drift``).
     ``native_rows`` are the positions of path constraints that use natives.
     """
 
@@ -42,19 +45,20 @@ class PhaseFunctions:
     integrands: ca.Function
     path: ca.Function
     flow: ca.Function
+    held: ca.Function
     native_rows: frozenset[int]
 
 
 def phase_functions(phase: Phase, statics: Sequence[str], *, eliminate: bool) -> PhaseFunctions:
     """Build the functions of one phase; named intermediates are shared subexpressions."""
-    form = phase.form
+    form, drift = phase.form, drift_names(phase.form)
     place = Place(
         *(
             SX.sym(name, size)
             for name, size in (
                 ("x", len(phase.states)),
                 ("u", len(phase.controls)),
-                ("z", 0 if eliminate else len(phase.algebraic)),
+                ("z", 0 if eliminate else len(phase.algebraic) + len(drift)),
                 ("n", len(phase.natives)),
                 ("t", 1),
                 ("p", len(statics)),
@@ -70,6 +74,9 @@ def phase_functions(phase: Phase, statics: Sequence[str], *, eliminate: bool) ->
         evaluate(form.derivatives[name], scope) if name in form.derivatives else SX(0)
         for name in phase.states
     ]
+    if drift and not eliminate:
+        added = drift_rates(form, scope, place.x, place.z[len(phase.algebraic) :])
+        rates = [rate + added[i] for i, rate in enumerate(rates)]
     rows = [evaluate(row.tree, scope) for row in path_rows(phase, eliminate=eliminate)]
     flow = ca.vertcat(SX(0, 1), *(evaluate(tree, scope) for tree in form.flow.values()))
     return PhaseFunctions(
@@ -77,6 +84,7 @@ def phase_functions(phase: Phase, statics: Sequence[str], *, eliminate: bool) ->
         function("integrands", [evaluate(tree, scope) for tree in phase.integrals.values()]),
         function("path", rows),
         ca.Function("flow", [place.natives, place.t, place.p], [flow]),
+        function("held", [held_values(form, scope)]),
         frozenset(i for i, row in enumerate(rows) if _uses(row, place.natives)),
     )
 
@@ -94,7 +102,7 @@ def _uses(row: SX, symbols: SX) -> bool:
 def along_scope(
     phase: Phase, place: Place, statics: Sequence[str], *, eliminate: bool = False
 ) -> dict[str, SX]:
-    """Every name that an expression along the phase may use."""
+    """Every name that an expression along the phase may use, intermediates when asked for."""
     scope = {name: SX(value) for name, value in phase.parameters.items()}
     for names, values in (
         (statics, place.p),
@@ -108,10 +116,7 @@ def along_scope(
     if eliminate:
         for group in phase.form.unknowns:
             scope |= _solved(phase, scope, group)
-    whole = _Definitions(phase, scope)
-    for name in phase.form.definitions:
-        whole[name]
-    return dict(whole)
+    return _Definitions(phase, scope)
 
 
 class _Definitions(dict[str, SX]):
@@ -153,20 +158,36 @@ def boundary_scope(
     """Names that boundary constraints of this phase may use."""
     scope = {name: SX(value) for name, value in phase.parameters.items()}
     scope |= {name: ends.integrals[i] for i, name in enumerate(phase.integrals)}
-    for label, place in (("initial", ends.initial), ("final", ends.final)):
-        along = along_scope(phase, place, statics, eliminate=eliminate)
-        scope |= {f"{label}.{name}": value for name, value in along.items()}
     scope |= {name: ends.initial.p[i] for i, name in enumerate(statics)}
     scope["duration"] = ends.final.t - ends.initial.t
-    return scope
+    rooms = {
+        f"{label}.": along_scope(phase, place, statics, eliminate=eliminate)
+        for label, place in (("initial", ends.initial), ("final", ends.final))
+    }
+    return _Prefixed(scope, rooms)
+
+
+class _Prefixed(dict[str, SX]):
+    """Names of its own, and those of other scopes behind their prefixes, the longest first."""
+
+    def __init__(self, own: Mapping[str, SX], rooms: Mapping[str, Mapping[str, SX]]) -> None:
+        super().__init__(own)
+        self._rooms = sorted(rooms.items(), key=lambda room: -len(room[0]))
+
+    def __missing__(self, name: str) -> SX:
+        for prefix, scope in self._rooms:
+            if name.startswith(prefix):
+                try:
+                    return scope[name[len(prefix) :]]
+                except KeyError:
+                    continue
+        raise KeyError(name)
 
 
 def objective_scope(model: Model, scopes: Sequence[Mapping[str, SX]], statics: SX) -> dict[str, SX]:
     """Names of objective and linkages: every phase's under its prefix, the only one's bare."""
-    scope = {
-        f"{phase.name}.{name}": value
-        for phase, names in zip(model.phases, scopes, strict=True)
-        for name, value in names.items()
-    }
-    scope |= {static.name: statics[i] for i, static in enumerate(model.statics)}
-    return scope | dict(scopes[0]) if len(scopes) == 1 else scope
+    own = {static.name: statics[i] for i, static in enumerate(model.statics)}
+    rooms = {f"{phase.name}.": names for phase, names in zip(model.phases, scopes, strict=True)}
+    if len(scopes) == 1:
+        rooms[""] = scopes[0]
+    return _Prefixed(own, rooms)

@@ -5,11 +5,10 @@ it bears none. Both hold, but nothing lies strictly inside of them, and an inter
 that is promised an inside drives their multipliers to infinity and loses its barrier parameter.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import sparse
 
 from solver.nlp.assembly import Nlp
 from solver.nlp.program import Program
@@ -21,6 +20,22 @@ Indices = NDArray[np.int_]
 _MATCH = 1e-7  # scaled: how far values, and a row of unit length, may be off
 _NUDGE = 1e-2  # of each variable's size: how far the test points lie from the guess
 _ROUND_OFF = 1e-12  # of a fraction
+
+
+def settled_rows(program: Program, settled: Sequence[Mapping[str, frozenset[float]]]) -> Indices:
+    """Rows that the model itself knows to leave no room: for each phase, label -> fractions."""
+    if not any(settled):
+        return np.array([], dtype=int)
+    found = [
+        row
+        for row, label in enumerate(program.labels())
+        if label.phase is not None
+        and any(
+            abs(label.fraction - where) <= _ROUND_OFF
+            for where in settled[label.phase].get(label.name, ())
+        )
+    ]
+    return np.array(found, dtype=int)
 
 
 def decided_rows(program: Program, scaling: Scaling, nlp: Nlp) -> Indices:
@@ -73,10 +88,9 @@ def _implied(
 ) -> tuple[Array, Array]:
     """The values (k,) of rows where the anchors hold, and how far they are from following."""
     values, jacobian = nlp.jacobian(z, [])
-    g, matrix = values.full().ravel(), sparse.csr_array(jacobian.sparse())[:, free]
-    ours, theirs = matrix[rows], matrix[anchors]
-    used = np.unique(np.concatenate([ours.indices, theirs.indices]))
-    own, basis = ours[:, used].toarray(), theirs[:, used].toarray()
+    both, g = jacobian[[*rows.tolist(), *anchors.tolist()], :], values.full().ravel()
+    used = np.intersect1d(np.flatnonzero(np.diff(both.colind())), free)
+    own, basis = np.split(both[:, used.tolist()].full(), [len(rows)])
     if not (np.isfinite(own).all() and np.isfinite(basis).all() and np.isfinite(g).all()):
         return np.zeros(len(rows)), np.full(len(rows), np.inf)
     combinations = np.linalg.lstsq(basis.T, own.T, rcond=None)[0]

@@ -8,22 +8,21 @@ contradict the others are kept, for the solver to refuse and for the report to n
 whose value the equalities decide are dropped, too (``decided.py``), without a word: they hold.
 """
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import Self
 
+import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
-from scipy import sparse
-from scipy.sparse.linalg import splu
 
 from solver.nlp.assembly import Nlp
-from solver.nlp.decided import decided_rows
+from solver.nlp.decided import decided_rows, settled_rows
 from solver.nlp.program import Program
 from solver.nlp.scaling import Scaling
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int_]
-Matrix = Any  # a scipy.sparse.csr_array; scipy ships no types
 
 _PIVOT = 1e-9  # squared distance of a unit row to the span of the rows before it
 _MATCH = 1e-7  # relative residual up to which a row equals a combination of others
@@ -67,26 +66,29 @@ class _Equalities:
         for block in variables.blocks:
             last[block.indices[:, block.fractions == 1.0]] = True
         pinned, fixed = np.flatnonzero(held & ~last), np.flatnonzero(held & last)
-        return cls(program, scaling, np.flatnonzero(lower == upper), fixed, pinned)
+        order = _in_time(program)
+        return cls(program, scaling, order[(lower == upper)[order]], fixed, pinned)
 
-    def at(self, nlp: Nlp, nudge: Array) -> tuple[Matrix, Array]:
+    def at(self, nlp: Nlp, nudge: Array) -> tuple[ca.DM, Array]:
         """Their Jacobian, each row of unit length, and their values, near the guess."""
         variables, scale = self.program.variables, self.scaling.columns
         lower = variables.gather("lower") / scale
         z = variables.gather("guess") / scale + nudge
-        z[self.pinned] = lower[self.pinned]
+        # At their values: what is bilinear in them, such as J(q) v of a foot at rest, is then 0.
+        for known in (self.pinned, self.fixed):
+            z[known] = lower[known]
         rows, jacobian = nlp.jacobian(z, [])
         targets = self.program.row_vector("lower", 0.0) / self.scaling.rows
         values = [(rows.full().ravel() - targets)[self.rows], (z - lower)[self.fixed]]
-        unit = sparse.eye_array(len(z), format="csr")[self.fixed]
-        whole = sparse.vstack([sparse.csr_array(jacobian.sparse())[self.rows], unit]).tocsc()
+        held = ca.Sparsity.triplet(
+            len(self.fixed), len(z), list(range(len(self.fixed))), self.fixed.tolist()
+        )
         free = np.setdiff1d(np.arange(len(z)), self.pinned)
-        matrix = sparse.csr_array(whole[:, free])
-        squares = np.asarray(matrix.multiply(matrix).sum(axis=1)).ravel()
-        length = np.where(squares > 0, np.sqrt(squares), 1.0)
-        return sparse.csr_array(sparse.diags_array(1 / length) @ matrix), np.concatenate(
-            values
-        ) / length
+        whole = ca.vertcat(jacobian[self.rows.tolist(), :], ca.DM(held, 1.0))
+        matrix = whole[:, free.tolist()]
+        length = np.sqrt(ca.sum2(matrix**2).full().ravel())
+        length = np.where(length > 0, length, 1.0)
+        return ca.mtimes(ca.diag(ca.DM(1 / length)), matrix), np.concatenate(values) / length
 
     def shared(self) -> NDArray[np.bool_]:
         """Columns of the Jacobian that many rows may use: variables at no node, such as times."""
@@ -97,6 +99,8 @@ class _Equalities:
 
     def names(self, positions: Indices) -> tuple[str, ...]:
         """How a report calls some equalities, each name once."""
+        if len(positions) == 0:
+            return ()
         labels = [label.name for label in self.program.labels()]
         final = {
             int(index): f"final {name}"
@@ -108,8 +112,31 @@ class _Equalities:
         return tuple(dict.fromkeys(called[position] for position in positions))
 
 
-def find_redundancy(program: Program, scaling: Scaling, nlp: Nlp) -> Redundancy:
-    """Equalities of the program that follow from the others, inequalities that they decide."""
+def _in_time(program: Program) -> Indices:
+    """All rows in the order of phases and time, those that tie ends last.
+
+    Neighbours in time share variables: in this order a factorisation does not fill.
+    """
+    keys = [
+        np.stack([np.full(where.size, phase), where])
+        for group in program.groups
+        for where, phase in [(group.rows.fractions.T.ravel(), group.phase or 0)]
+    ]
+    sums = np.full((2, len(program.sum_names)), np.nan)
+    phase, where = np.concatenate([*keys, sums], axis=1)
+    return np.lexsort((where, phase, np.isnan(where)))
+
+
+def find_redundancy(
+    program: Program,
+    scaling: Scaling,
+    nlp: Nlp,
+    settled: Sequence[Mapping[str, frozenset[float]]] = (),
+) -> Redundancy:
+    """Equalities of the program that follow from the others, inequalities that they decide.
+
+    ``settled`` are those that the model knows of, for each phase (``decided.settled_rows``).
+    """
     equalities = _Equalities.of(program, scaling)
     rng = np.random.default_rng(0)
     nudges = _NUDGE * rng.standard_normal((2, program.variables.size))
@@ -124,21 +151,21 @@ def find_redundancy(program: Program, scaling: Scaling, nlp: Nlp) -> Redundancy:
     return Redundancy(
         equalities.rows[implied[implied < split]],
         equalities.fixed[implied[implied >= split] - split],
-        decided_rows(program, scaling, nlp),
+        np.union1d(decided_rows(program, scaling, nlp), settled_rows(program, settled)),
         equalities.names(implied),
         equalities.names(suspects[spanned & ~agree]),
     )
 
 
-def _dependent_rows(matrix: Matrix, values: Array, shared: NDArray[np.bool_]) -> Indices:
+def _dependent_rows(matrix: ca.DM, values: Array, shared: NDArray[np.bool_]) -> Indices:
     """Rows in the span of the others, of a dependent set the last ones.
 
     A column that all rows use would fill A A', at the price of its rank cubed; so the pivots are
     taken without the shared ones. That suspects too many, at most one for each such column.
     """
-    if not np.all(np.isfinite(matrix.data)):
+    if not matrix.is_regular():
         return np.array([], dtype=int)
-    suspects = _vanishing_pivots(matrix[:, np.flatnonzero(~shared)])
+    suspects = _vanishing_pivots(matrix[:, np.flatnonzero(~shared).tolist()])
     for _ in range(int(shared.sum())):
         outside = np.flatnonzero(_deviations(matrix, values, suspects)[0] >= _MATCH)
         if len(outside) == 0:
@@ -147,44 +174,42 @@ def _dependent_rows(matrix: Matrix, values: Array, shared: NDArray[np.bool_]) ->
     return suspects
 
 
-def _factors(matrix: Matrix, **options: Any) -> Any:
-    """A sparse LU; SuperLU reports missing memory as a RuntimeError of its own."""
-    try:
-        return splu(matrix, **options)
-    except RuntimeError as error:
-        if "MALLOC" in str(error):
-            raise MemoryError("the search for implied equalities ran out of memory") from error
-        raise
-
-
-def _vanishing_pivots(matrix: Matrix) -> Indices:
+def _vanishing_pivots(matrix: ca.DM) -> Indices:
     """Rows in the span of those before them, by the pivots of A A' in order."""
     if matrix.shape[0] == 0:
         return np.array([], dtype=int)
-    gram = sparse.csc_array(matrix @ matrix.T + _TRIFLE * sparse.eye_array(matrix.shape[0]))
-    options = {"SymmetricMode": True}
-    factors = _factors(gram, permc_spec="NATURAL", diag_pivot_thresh=0.0, options=options)
-    return np.flatnonzero(np.abs(factors.U.diagonal()) < _PIVOT)
+    gram = ca.mtimes(matrix, matrix.T) + _TRIFLE * ca.DM.eye(matrix.shape[0])
+    pivots, *_ = ca.ldl(gram, False)
+    return np.flatnonzero(np.abs(pivots.full().ravel()) < _PIVOT)
 
 
-def _deviations(matrix: Matrix, values: Array, rows: Indices) -> tuple[Array, Array]:
+def _deviations(matrix: ca.DM, values: Array, rows: Indices) -> tuple[Array, Array]:
     """How far rows (k,), and their values, are from the nearest combinations of all others.
 
     Least squares by the augmented system [I B'; B 0], which full columns of B do not fill.
     """
     if len(rows) == 0:
         return np.empty(0), np.empty(0)
-    if not np.all(np.isfinite(matrix.data)):
+    # Most programs never get here, and scipy takes longer to load than they to be solved.
+    from scipy import sparse  # noqa: PLC0415 - see above
+    from scipy.sparse.linalg import splu  # noqa: PLC0415
+
+    if not matrix.is_regular():
         return np.full(len(rows), np.inf), np.full(len(rows), np.inf)
     others = np.setdiff1d(np.arange(matrix.shape[0]), rows)
-    basis, width = matrix[others], matrix.shape[1]
+    everything = sparse.csr_array(matrix.sparse())
+    basis, width = everything[others], matrix.shape[1]
     corner = -_TRIFLE * sparse.eye_array(len(others))
-    factors = _factors(
-        sparse.block_array([[sparse.eye_array(width), basis.T], [basis, corner]]).tocsc()
-    )
+    system = sparse.block_array([[sparse.eye_array(width), basis.T], [basis, corner]]).tocsc()
+    try:
+        factors = splu(system)
+    except RuntimeError as error:
+        if "MALLOC" in str(error):  # SuperLU's own way to say so
+            raise MemoryError("the search for implied equalities ran out of memory") from error
+        raise
     distances, gaps = [], []
     for some in np.array_split(rows, -(-len(rows) // _AT_ONCE)):
-        targets = matrix[some].toarray().T
+        targets = everything[some].toarray().T
         padded = np.concatenate([targets, np.zeros((len(others), len(some)))])
         combinations = factors.solve(padded)[width:]
         distances.append(np.linalg.norm(targets - basis.T @ combinations, axis=0))

@@ -34,6 +34,8 @@ class Meshed:
         The mesh before this one. What was cut or raised since then is not undone.
     least
         The parts of each segment at the least, whatever its error, (segments,).
+    shares
+        The error of the integrals on each segment over what it may have, (segments,).
     """
 
     mesh: Mesh
@@ -43,6 +45,7 @@ class Meshed:
     rates: Array | None = None
     before: Mesh | None = None
     least: NDArray[np.int_] | None = None
+    shares: Array | None = None
 
     @property
     def orders(self) -> NDArray[np.int_]:

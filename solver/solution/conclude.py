@@ -25,6 +25,7 @@ from solver.backends import NlpStatus
 from solver.meshes import SolvedMesh, settled
 from solver.nlp.residuals import RowResidual
 from solver.run import Run
+from solver.simulation.frames import with_frames
 from solver.solution.choose import choose
 from solver.solution.words import advice, message, warnings
 
@@ -100,7 +101,7 @@ def _solution(
         ],
         warnings=[*warnings(problem, chosen.redundancy), *solved[0].warnings],
         static={name: finite(value) for name, value in chosen.statics.items()},
-        phases=chosen.phases,
+        phases=_framed(problem, chosen),
         mesh_refinement=_history(problem, solved),
         certificate=certificate,
         solver=SolverReport(
@@ -117,6 +118,15 @@ def _solution(
         timing=run.timing(),
         reproduce=Reproduce(spec_sha256=spec_sha256(problem), versions=dict(_versions())),
     )
+
+
+def _framed(problem: Problem, chosen: SolvedMesh) -> list[PhaseResult]:
+    """The phases with the frames of their motions, for drawing."""
+    systems = {phase.name: phase.system for phase in problem.phases}
+    return [
+        with_frames(phase, systems[phase.name], chosen.statics) if phase.name in systems else phase
+        for phase in chosen.phases
+    ]
 
 
 def _history(problem: Problem, solved: Sequence[SolvedMesh]) -> MeshRefinement:

@@ -7,9 +7,10 @@ import numpy as np
 from schemas import resolve
 from schemas.corners import corners
 from schemas.problem import Problem
-from schemas.remarks import untied
+from schemas.remarks import folding, untied
 from schemas.results import Certificate, PhaseResult, Residual, SolutionStatus
 from solver.meshes import SolvedMesh
+from solver.model.build import START
 from solver.nlp.redundancy import Redundancy
 from solver.solution.choose import choose
 
@@ -139,10 +140,12 @@ def _place(residual: Residual) -> str:
 def warnings(problem: Problem, redundancy: Redundancy) -> list[str]:
     """What works but deserves a look: dropped equalities, functions with kinks."""
     lines = [
-        f"'{name}' follows from the other equalities and was dropped." for name in redundancy.names
+        f"'{name}' follows from the other equalities and was dropped."
+        for name in redundancy.names
+        if not name.startswith(START)
     ]
     lines += [
         f"'{name}' depends on other equalities and may contradict them."
         for name in redundancy.conflicts
     ]
-    return [*lines, *untied(problem), *corners(problem)]
+    return [*lines, *untied(problem), *folding(problem), *corners(problem)]

@@ -8,18 +8,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.problem import SolverSettings
-from solver.backends import DEFAULT, FEASIBLE, Backend, NlpStatus, Outcome, Strategy, Watch
+from solver.backends import (
+    ADAPTIVE,
+    DEFAULT,
+    FEASIBLE,
+    RESCALED,
+    Backend,
+    NlpStatus,
+    Outcome,
+    Strategy,
+    Watch,
+)
 from solver.backends.plugin import iterate_at
 from solver.nlp.elastic import Elastic, elastic
 from solver.nlp.task import NlpTask
 
 Mask = NDArray[np.bool_]
 
-STRATEGIES = (
-    Strategy("adaptive barrier", adaptive=True),
-    Strategy("rescaled", rescaled=True),
-)
-"""What is tried after the default, where the backend knows it; the elastic start comes last."""
+STRATEGIES = (DEFAULT, ADAPTIVE, RESCALED)
+"""What is tried, but for the first, where the backend knows it; the elastic start comes last."""
 
 ELASTIC = "elastic start"
 LIMITS = "elastic limits"
@@ -69,14 +76,14 @@ class Portfolio:
     announce: Callable[[str], None]
     limits: tuple[Mask, Mask] | None = None
 
-    def solve(self, task: NlpTask, first: Outcome) -> Won:
+    def solve(self, task: NlpTask, first: Outcome, tried: Strategy = DEFAULT) -> Won:
         """Try the strategies in turn until one ends at an optimum.
 
-        ``first`` is the outcome of the default strategy. Where none does better, the best of all
-        is returned: the smallest violation until feasible, then the lowest objective.
+        ``first`` is the outcome of the strategy that was ``tried``. Where none does better, the
+        best of all is returned: the smallest violation until feasible, then the lowest objective.
         """
-        won, attempts = Won(first), [_described(DEFAULT.name, first)]
-        for name, attempt in self._attempts(task):
+        won, attempts = Won(first, tried.name), [_described(tried.name, first)]
+        for name, attempt in self._attempts(task, tried):
             if won.outcome.status not in _WORTH_ANOTHER:
                 break
             self.announce(f"again, {name}")
@@ -90,9 +97,11 @@ class Portfolio:
         others = [line for line in attempts if not line.startswith(f"{won.strategy}: ")]
         return replace(won, attempts=tuple(others))
 
-    def _attempts(self, task: NlpTask) -> Iterator[tuple[str, Callable[[], Outcome]]]:
+    def _attempts(
+        self, task: NlpTask, tried: Strategy
+    ) -> Iterator[tuple[str, Callable[[], Outcome]]]:
         for strategy in STRATEGIES:
-            if self.backend.offers(strategy):
+            if strategy != tried and self.backend.offers(strategy):
                 yield strategy.name, partial(self.attempt, task, strategy)
         every = np.ones(len(task.row_lower), dtype=bool)
         ways = [(ELASTIC, (every, np.zeros(len(task.start), dtype=bool)))]

@@ -6,7 +6,6 @@ from dataclasses import replace
 from schemas.errors import InvalidModel, Issue
 from schemas.problem import SolverSettings
 from solver.backends import DEFAULT, NlpStatus, Outcome, Strategy, Watch, make_backend
-from solver.nlp.stationarity import stationary
 from solver.nlp.task import NlpTask
 from solver.solving.portfolio import Mask, Portfolio, Won
 
@@ -23,9 +22,12 @@ def solve_task(
     *,
     warm: bool,
     once: bool = False,
+    first: Strategy = DEFAULT,
     limits: tuple[Mask, Mask] | None = None,
 ) -> Won:
     """Solve; from a warm start first where there is one, and cold again where that fails.
+
+    ``first`` is the strategy to begin with, where the backend knows it.
 
     ``once``: not again, and not for long; there is an optimum that will do.
 
@@ -42,7 +44,9 @@ def solve_task(
     if refusal := backend.refusal(task):
         raise InvalidModel([Issue("/solver/backend", refusal)])
 
-    def attempt(task: NlpTask, strategy: Strategy = DEFAULT, *, warm: bool = False) -> Outcome:
+    begin = first if backend.offers(first) else DEFAULT
+
+    def attempt(task: NlpTask, strategy: Strategy = begin, *, warm: bool = False) -> Outcome:
         outcome = backend.solve(task, settings, watch(), warm=warm, strategy=strategy)
         return _judged(task, outcome, settings.tolerance)
 
@@ -56,9 +60,9 @@ def solve_task(
         if again.status is NlpStatus.OPTIMAL or outcome.status is not NlpStatus.ACCEPTABLE:
             outcome = again
     if not settings.portfolio:
-        return Won(outcome)
+        return Won(outcome, begin.name)
     portfolio = Portfolio(backend, settings, attempt, watch, announce, limits)
-    return portfolio.solve(task, outcome)
+    return portfolio.solve(task, outcome, begin)
 
 
 def _judged(task: NlpTask, outcome: Outcome, tolerance: float) -> Outcome:
@@ -68,5 +72,8 @@ def _judged(task: NlpTask, outcome: Outcome, tolerance: float) -> Outcome:
         return outcome
     if outcome.point.violation > tolerance:
         return outcome
+    # Seldom asked, and it loads scipy, which takes longer than most programs to be solved.
+    from solver.nlp.stationarity import stationary  # noqa: PLC0415
+
     arrived = stationary(task, outcome.point.z, rows, bounds, tolerance)
     return replace(outcome, status=NlpStatus.OPTIMAL) if arrived else outcome

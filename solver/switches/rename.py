@@ -1,9 +1,14 @@
 """Expressions of one phase, said of its parts."""
 
-from collections.abc import Collection, Sequence
+import math
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
+from schemas import resolve
 from schemas.expressions import Call, Expression, Name, Tree
+from schemas.phases import Constraint, Phase
+from schemas.problem import Objective, Problem
+from schemas.values import Scalar
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,3 +69,67 @@ class Renaming:
             if name.startswith(prefix):
                 return name[len(prefix) :]
         return None
+
+
+def renaming(problem: Problem, phase: Phase, parts: Sequence[str], *prefixes: str) -> Renaming:
+    """What the names of one phase mean, written behind any of the prefixes."""
+    return Renaming(prefixes, parts, phase.integrals, problem.static)
+
+
+def renamings(problem: Problem, parts: Mapping[str, Sequence[str]]) -> list[Renaming]:
+    """Those of the split phases (name -> parts), for expressions that see the whole problem."""
+    alone = ("",) if len(problem.phases) == 1 else ()
+    return [
+        renaming(problem, phase, parts[phase.name], f"{phase.name}.", *alone)
+        for phase in problem.phases
+        if phase.name in parts
+    ]
+
+
+def renamed_objective(problem: Problem, parts: Mapping[str, Sequence[str]]) -> Objective | None:
+    """The objective over the parts."""
+    if problem.objective is None:
+        return None
+    minimize = problem.objective.minimize
+    for one in renamings(problem, parts):
+        minimize = one.expression(minimize)
+    return problem.objective.model_copy(update={"minimize": minimize})
+
+
+def renamed_linkages(problem: Problem, parts: Mapping[str, Sequence[str]]) -> list[Constraint]:
+    """The linkages over the parts."""
+    rows = []
+    for row in problem.linkages:
+        expression = row.expression
+        for one in renamings(problem, parts):
+            expression = one.expression(expression)
+        rows.append(row.model_copy(update={"expression": expression}))
+    return rows
+
+
+def whole_rows(problem: Problem, phase: Phase, parts: Sequence[str]) -> list[Constraint]:
+    """What holds for a split phase as a whole: its boundary constraints, and its duration."""
+    rename, constants = renaming(problem, phase, parts, ""), resolve.parameters(phase.system)
+    rows = [
+        linkage(row.name, rename.expression(row.expression), resolve.interval(row, constants))
+        for row in phase.boundary
+    ]
+    if phase.time.duration is not None:
+        duration = rename.expression(Expression("duration", Name("duration")))
+        limits = resolve.interval(phase.time.duration, constants)
+        rows.append(linkage("duration", duration, limits))
+    return rows
+
+
+def equal(name: str, left: str, right: str) -> Constraint:
+    """A linkage between two names."""
+    tree = Call("-", (Name(left), Name(right)))
+    return linkage(name, Expression(f"{left} - {right}", tree))
+
+
+def linkage(
+    name: str, expression: Expression, limits: tuple[float, float] = (0.0, 0.0)
+) -> Constraint:
+    """With limits as numbers: a linkage knows no phase's parameters."""
+    lower, upper = (Scalar(limit) if math.isfinite(limit) else None for limit in limits)
+    return Constraint.model_construct(name=name, expression=expression, lower=lower, upper=upper)

@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from schemas import resolve
-from schemas.expressions import Call, Expression, Name
 from schemas.guesses import LinearGuess
 from schemas.methods import Method
 from schemas.phases import Constraint, Phase, Time
@@ -14,7 +13,7 @@ from schemas.problem import Problem
 from schemas.values import Bound, Scalar
 from solver.lowering import lower
 from solver.switches.holds import Hold
-from solver.switches.rename import Renaming
+from solver.switches.rename import equal, renamed_linkages, renamed_objective, whole_rows
 
 SHORTEST = 1e-4
 """The least duration of a part, as a share of the phase's."""
@@ -84,16 +83,22 @@ def split(problem: Problem, cuts: Sequence[Cut]) -> tuple[Problem, Plan]:
     if not any(cut.times for cut in cuts):
         return problem, plan
     continuous = [form.states for form in lower(problem)]
+    names_of = {
+        phase.name: part_names(phase, cut)
+        for phase, cut in zip(problem.phases, cuts, strict=True)
+        if cut.times
+    }
     parts, linkages = list[Phase](), list[Constraint]()
     for phase, cut, names in zip(problem.phases, cuts, continuous, strict=True):
         parts += _parts(problem, phase, cut)
-        linkages += _whole(problem, phase, cut)
-        linkages += _continuity(phase, cut, names)
+        if cut.times:
+            linkages += whole_rows(problem, phase, part_names(phase, cut))
+            linkages += _continuity(phase, cut, names)
     return problem.model_copy(
         update={
             "phases": parts,
-            "linkages": [*(_renamed(problem, cuts, row) for row in problem.linkages), *linkages],
-            "objective": _objective(problem, cuts),
+            "linkages": [*renamed_linkages(problem, names_of), *linkages],
+            "objective": renamed_objective(problem, names_of),
             "guess": LinearGuess(),
             "stages": [],
             "multistart": 1,
@@ -148,70 +153,10 @@ def _method(method: Method, share: float) -> Method:
     return method.model_copy(update={"segments": segments})
 
 
-def _whole(problem: Problem, phase: Phase, cut: Cut) -> list[Constraint]:
-    """What holds for the phase as a whole: its boundary constraints, and its duration."""
-    if not cut.times:
-        return []
-    rename, constants = _renaming(problem, phase, cut, ""), resolve.parameters(phase.system)
-    rows = [
-        _constraint(row.name, rename.expression(row.expression), resolve.interval(row, constants))
-        for row in phase.boundary
-    ]
-    if phase.time.duration is not None:
-        duration = rename.expression(Expression("duration", Name("duration")))
-        limits = resolve.interval(phase.time.duration, constants)
-        rows.append(_constraint("duration", duration, limits))
-    return rows
-
-
 def _continuity(phase: Phase, cut: Cut, names: Sequence[str]) -> list[Constraint]:
     """States that do not jump from part to part."""
     return [
-        _constraint(
-            f"{name}_continuous", _difference(f"{one}.final.{name}", f"{two}.initial.{name}")
-        )
+        equal(f"{name}_continuous", f"{one}.final.{name}", f"{two}.initial.{name}")
         for one, two in itertools.pairwise(part_names(phase, cut))
         for name in names
     ]
-
-
-def _difference(left: str, right: str) -> Expression:
-    return Expression(f"{left} - {right}", Call("-", (Name(left), Name(right))))
-
-
-def _constraint(
-    name: str, expression: Expression, limits: tuple[float, float] = (0.0, 0.0)
-) -> Constraint:
-    """With limits as numbers: a linkage knows no phase's parameters."""
-    lower, upper = (Scalar(limit) if math.isfinite(limit) else None for limit in limits)
-    return Constraint.model_construct(name=name, expression=expression, lower=lower, upper=upper)
-
-
-def _objective(problem: Problem, cuts: Sequence[Cut]) -> object:
-    if problem.objective is None:
-        return None
-    minimize = problem.objective.minimize
-    for rename in _renamings(problem, cuts):
-        minimize = rename.expression(minimize)
-    return problem.objective.model_copy(update={"minimize": minimize})
-
-
-def _renamed(problem: Problem, cuts: Sequence[Cut], row: Constraint) -> Constraint:
-    expression = row.expression
-    for rename in _renamings(problem, cuts):
-        expression = rename.expression(expression)
-    return row.model_copy(update={"expression": expression})
-
-
-def _renamings(problem: Problem, cuts: Sequence[Cut]) -> list[Renaming]:
-    """Those of the split phases, for expressions that see the whole problem."""
-    alone = ("",) if len(problem.phases) == 1 else ()
-    return [
-        _renaming(problem, phase, cut, f"{phase.name}.", *alone)
-        for phase, cut in zip(problem.phases, cuts, strict=True)
-        if cut.times
-    ]
-
-
-def _renaming(problem: Problem, phase: Phase, cut: Cut, *prefixes: str) -> Renaming:
-    return Renaming(prefixes, part_names(phase, cut), phase.integrals, problem.static)

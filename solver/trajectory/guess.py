@@ -87,9 +87,9 @@ def _earlier(guess: SolutionGuess, phase: Phase, *, only: bool) -> Trajectory | 
     breaks = next(iter(groups.values())).breaks
     start, end = float(breaks[0]), float(breaks[-1])
     empty = Curves([start, end], {})
-    return Trajectory(
-        start, end, *(groups.get(name, empty) for name in ("states", "controls", "rates"))
-    )
+    others = groups.get("rates") or groups.get("forces") or empty
+    states, controls = (groups.get(name, empty) for name in ("states", "controls"))
+    return Trajectory(start, end, states, controls, others)
 
 
 def _completed(trajectory: Trajectory, phase: Phase) -> Trajectory:

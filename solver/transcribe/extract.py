@@ -104,16 +104,21 @@ def _trajectory(
                 nodes.u, lengths[strip.where, None]
             ),
         ),
-        curves(phase.algebraic, lambda strip, nodes: _algebraic_curve(strip.transcription, nodes))
+        curves(
+            phase.algebraic,
+            lambda strip, nodes: _algebraic_curve(
+                strip.transcription, nodes.z[:, :, : len(phase.algebraic)]
+            ),
+        )
         if strips[0].z.shape[2]
         else Curves(breaks, {}),
     )
 
 
-def _algebraic_curve(transcription: Transcription, nodes: _Nodes) -> Array:
+def _algebraic_curve(transcription: Transcription, z: Array) -> Array:
     """The polynomial through the nodes with such variables."""
     which = [i for i, node in enumerate(transcription.nodes) if node.algebraic]
-    return fit(2 * transcription.fractions[which] - 1, nodes.z[:, which])
+    return fit(2 * transcription.fractions[which] - 1, z[:, which])
 
 
 def _merged(layout: PhaseLayout, parts: Sequence[Array]) -> Array:
@@ -137,6 +142,8 @@ def _result(
         for group, names in phase.chain.publish.items()
         if names or group in ("states", "controls")
     }
+    if not trajectory.others:  # forces, where the method has no variables for them
+        published.pop("forces", None)
     return PhaseResult(
         name=phase.name,
         knots=(trajectory.start + duration * layout.mesh.knots).tolist(),

@@ -13,6 +13,7 @@ import numpy as np
 
 from solver.expressions import SX
 from solver.model import Phase
+from solver.model.drift import drift_names
 from solver.model.symbolic import PhaseFunctions
 from solver.nlp.variables import Array
 from solver.trajectory import Trajectory
@@ -60,9 +61,10 @@ def guessed_integrals(
     fractions = np.linspace(0.0, 1.0, _SAMPLES)
     times = guess.start + (guess.end - guess.start) * fractions
     wanted = functions.integrands.size1_in(2)  # none where unknowns are eliminated
+    algebraic = (*phase.algebraic, *drift_names(phase.form))[:wanted]
     series = [
         guess.sample(names, fractions)
-        for names in (phase.states, phase.controls, phase.algebraic[:wanted], phase.natives)
+        for names in (phase.states, phase.controls, algebraic, phase.natives)
     ]
     constants = np.repeat(np.array(statics, dtype=float)[:, None], _SAMPLES, axis=1)
     integrands = functions.integrands.map(_SAMPLES)(*series, times[None, :], constants).full()

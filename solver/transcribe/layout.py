@@ -17,8 +17,8 @@ from solver.model import Interval, Phase
 from solver.nlp.variables import Array, Indices
 from solver.transcriptions.base import Transcription
 
-Kind = Literal["state", "control", "algebraic"]
-KINDS: tuple[Kind, ...] = ("state", "control", "algebraic")
+Kind = Literal["state", "control", "algebraic", "native", "drift"]
+KINDS: tuple[Kind, ...] = ("state", "control", "algebraic", "native", "drift")
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +77,7 @@ class Strip:
     blocks: dict[Kind, tuple[Indices, ...]]
 
     def columns(self) -> Indices:
-        """All variables of each segment, node by node: states, controls, algebraic."""
+        """All variables of each segment, node by node, kind by kind."""
         return np.concatenate(list(self._parts()))
 
     def at_node(self, node: int) -> Indices:

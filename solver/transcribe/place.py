@@ -1,12 +1,14 @@
 """Adds the variables of one phase to the table: times, knots, and what lies between them."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from schemas.expressions import split
 from solver.mesh import Mesh
 from solver.model import OPEN, Interval, Phase, Static
+from solver.model.drift import drift_names
 from solver.nlp.scaling import typical_size
 from solver.nlp.variables import Array, Indices, Variables
 from solver.trajectory import Trajectory
@@ -16,6 +18,7 @@ from solver.transcriptions.base import Node, Transcription
 Limits = Mapping[str, Interval]
 
 _DENSE = np.linspace(0.0, 1.0, 5)
+_SHORTEST = 1e-3  # s: of a guess
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +30,12 @@ class _Quantity:
     initial: Limits
     final: Limits
     scale: Array
+
+    def of_orders(self, orders: Sequence[int]) -> "_Quantity":
+        """The derivatives of these orders alone."""
+        which = [i for i, name in enumerate(self.names) if split(name).order in orders]
+        names = tuple(self.names[i] for i in which)
+        return replace(self, names=names, scale=self.scale[which])
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +60,8 @@ class Placer:
             "state": True,
             "control": whole.shares_controls,
             "algebraic": whole.shares_controls,
+            "native": False,
+            "drift": False,
         }
         knots: dict[Kind, Indices] = {
             kind: self._block(quantities[kind], self.mesh.knots)
@@ -89,7 +100,7 @@ class Placer:
         if limits.fixed:
             return Edge(None, limits)
         sides = (np.full((1, 1), limits.lower), np.full((1, 1), limits.upper))
-        scale = np.array([max(self.guess.end - self.guess.start, 1e-3)])
+        scale = np.array([max(self.guess.end - self.guess.start, _SHORTEST)])
         at = np.array([np.nan])
         indices = self.variables.add(
             self.index, (f"{name} time",), at, sides, np.full((1, 1), guess), scale
@@ -110,12 +121,35 @@ class Placer:
             "state": quantity(phase.states, tables),
             "control": quantity(phase.controls, tables),
             "algebraic": quantity(unknown, (free, free, free)),
+            "native": self._natives(),
+            "drift": self._drift(),
         }
+
+    def _drift(self) -> _Quantity:
+        """What keeps contacts and loops from drifting."""
+        names = drift_names(self.phase.form)
+        free = dict.fromkeys(names, OPEN)
+        return _Quantity(names, free, free, free, np.ones(len(names)))
+
+    def _natives(self) -> _Quantity:
+        """Derivatives of the method's own curves, where it has any as variables."""
+        orders = {order for node in self.transcription.nodes for order in node.native}
+        names = tuple(name for name in self.phase.natives if split(name).order in orders)
+        free = dict.fromkeys(names, OPEN)
+        return _Quantity(names, free, free, free, self._sizes(names, (free, free, free)))
 
     def _sizes(self, names: Sequence[str], tables: Sequence[Limits]) -> Array:
         limits = [[side for table in tables for side in table[name]] for name in names]
         samples = self.guess.sample(names, self.mesh.fractions(_DENSE).ravel())
-        return typical_size(np.array(limits).reshape(len(names), 6), samples)
+        sides = np.array(limits).reshape(len(names), 6)
+        return typical_size(sides, samples, self._rates(names))
+
+    def _rates(self, names: Sequence[str]) -> Array:
+        """Sizes of derivatives that the method itself takes, in a short phase; zero: unknown."""
+        orders = np.array([split(name).order for name in names], dtype=float).reshape(-1, 1)
+        duration = max(self.guess.end - self.guess.start, _SHORTEST)
+        known = self.transcription.native and duration < 1.0
+        return np.asarray(np.where(orders > 0, duration**-orders, 0.0) * known)
 
     def _strip(
         self,
@@ -131,12 +165,15 @@ class Placer:
         def at_node(kind: Kind, number: int, node: Node) -> Indices:
             if shared[kind] and number in (0, last):
                 return knots[kind][:, where + (number == last)]
-            if not getattr(node, kind):
+            if not (number > 0 if kind == "drift" else getattr(node, kind)):
                 return np.empty((0, len(where)), dtype=int)
             fractions = starts + node.fraction * widths
             if node.fraction == 1.0:  # exactly: the limits of the end are told by it
                 fractions = self.mesh.knots[1:][where]
-            return self._block(quantities[kind], fractions)
+            quantity = quantities[kind]
+            if kind == "native":
+                quantity = quantity.of_orders(node.native)
+            return self._block(quantity, fractions)
 
         blocks = {
             kind: tuple(at_node(kind, i, node) for i, node in enumerate(transcription.nodes))

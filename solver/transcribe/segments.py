@@ -7,7 +7,9 @@ import casadi as ca
 import numpy as np
 
 from solver.expressions import SX
+from solver.lowering import Form
 from solver.model import Constraint, Interval
+from solver.model.drift import drift_names, held_labels
 from solver.model.symbolic import PhaseFunctions, Place, path_rows
 from solver.nlp.stages import Rows, StageGroup
 from solver.nlp.variables import Array, Indices
@@ -51,14 +53,22 @@ def symbolic_stage(
     """
     fraction, width = ca.vertsplit(place)
     times, blocks = shared.times, strip.blocks
+    own = [
+        [SX.sym(kind, len(blocks[kind][i])) for kind in KINDS]
+        for i in range(len(strip.transcription.nodes))
+    ]
+    still = SX.zeros(len(blocks["drift"][-1]), 1)  # nothing drifts at a segment's start
     points = tuple(
         Point(
-            SX.sym("x", len(blocks["state"][i])),
-            SX.sym("u", len(blocks["control"][i])),
-            SX.sym("z", len(blocks["algebraic"][i])),
+            x,
+            u,
+            ca.vertcat(z, drift if i else still),
             times.at(fraction + node.fraction * width),
+            natives,
         )
-        for i, node in enumerate(strip.transcription.nodes)
+        for i, (node, (x, u, z, natives, drift)) in enumerate(
+            zip(strip.transcription.nodes, own, strict=True)
+        )
     )
     h = (times.end - times.start) * width
 
@@ -69,8 +79,8 @@ def symbolic_stage(
         return SX(functions.flow(natives, t, shared.statics))
 
     collocation = strip.transcription.collocate(Segment(points, h, derivative, flow))
-    own = ca.vertcat(*(part for point in points for part in (point.x, point.u, point.z)))
-    return SymbolicStage(own, h, collocation, functions, shared.statics)
+    stacked = ca.vertcat(*(part for parts in own for part in parts))
+    return SymbolicStage(stacked, h, collocation, functions, shared.statics)
 
 
 def _arguments(point: Point, statics: SX) -> list[SX]:
@@ -79,15 +89,18 @@ def _arguments(point: Point, statics: SX) -> list[SX]:
 
 def segment_group(
     index: int, layout: PhaseLayout, strip: Strip, functions: PhaseFunctions, weights: Array
-) -> StageGroup:
+) -> tuple[StageGroup, ca.Function]:
     """Defects, quadrature, and constraints at nodes inside of the segments.
 
-    ``weights`` (sums, integrals) says what each integral adds to each sum of the program.
+    ``weights`` (sums, integrals) says what each integral adds to each sum of the program. With
+    the group comes the function that reads its segments out: variables, constants -> x, f, u, z
+    (names, nodes), and the integrals; z is zero at nodes without algebraic variables.
     """
     place, shared = SX.sym("place", 2), layout.shared()
     stage = symbolic_stage(strip, shared, place, functions)
-    sums = ca.mtimes(ca.DM(weights), stage.quadrature()) if weights.size else SX(len(weights), 1)
-    return StageGroup(
+    integrals = stage.quadrature()
+    sums = ca.mtimes(ca.DM(weights), integrals) if weights.size else SX(len(weights), 1)
+    group = StageGroup(
         phase=index,
         variables=ca.vertcat(stage.own, shared.symbols),
         constants=place,
@@ -96,24 +109,15 @@ def segment_group(
         rows=_segment_rows(layout, strip, stage),
         sums=sums,
     )
-
-
-def segment_nodes(layout: PhaseLayout, strip: Strip, functions: PhaseFunctions) -> ca.Function:
-    """Segment's variables, constants -> x, f, u, z (names, nodes), and its integrals.
-
-    ``z`` is zero at nodes without algebraic variables.
-    """
-    place, shared = SX.sym("place", 2), layout.shared()
-    stage = symbolic_stage(strip, shared, place, functions)
     points = stage.collocation.points
     outputs = [
         ca.horzcat(*(point.x for point in points)),
         ca.horzcat(*(stage.at(functions.derivatives, point) for point in points)),
         ca.horzcat(*(point.u for point in points)),
         ca.horzcat(*(point.z for point in points)),
-        stage.quadrature(),
+        integrals,
     ]
-    return ca.Function("nodes", [ca.vertcat(stage.own, shared.symbols), place], outputs)
+    return group, ca.Function("nodes", [group.variables, place], outputs)
 
 
 def knot_group(
@@ -126,9 +130,10 @@ def knot_group(
     if not which or not transcription.shares_controls:
         return []
     shared, fraction = layout.shared(), SX.sym("fraction")
-    x, u, z = (SX.sym(kind, len(layout.knots[kind])) for kind in KINDS)
+    x, u, z, *_ = (SX.sym(kind, len(layout.knots[kind])) for kind in KINDS)
     natives = SX.zeros(len(layout.phase.natives), 1)  # no row of these uses them
-    place = Place(x, u, z, natives, shared.times.at(fraction), shared.statics)
+    whole = ca.vertcat(z, SX.zeros(len(drift_names(layout.phase.form)), 1))  # nor those
+    place = Place(x, u, whole, natives, shared.times.at(fraction), shared.statics)
     knots = layout.mesh.knots[None, :]
     rows = _path_rows(path, which, SX(functions.path(*place.arguments())), knots)
     columns = _with_shared(layout.knot_columns(), shared)
@@ -160,9 +165,33 @@ def _segment_rows(layout: PhaseLayout, strip: Strip, stage: SymbolicStage) -> Ro
             parts.append(_bound_rows(layout, layout.phase.states, point.x, where))
     middle = strip.fractions(np.array([0.5])).T
     parts += [
-        _bound_rows(layout, layout.phase.controls, corner, middle) for corner in collocation.hull
+        _bound_rows(layout, layout.phase.controls, corner, middle, of_nodes=True)
+        for corner in collocation.hull
     ]
+    if len(strip.blocks["drift"][-1]):
+        parts += _held_rows(layout.phase.form, strip, stage)
     return _stacked([part for part in parts if part.names] or parts[:1])
+
+
+def _held_rows(form: Form, strip: Strip, stage: SymbolicStage) -> list[Rows]:
+    """What contacts and loops hold, at every node but the first.
+
+    Places that are not anchored are those at the segment's start: from knot to knot these agree.
+    """
+    held, points = form.holonomic, stage.collocation.points
+    places = [one for one in held if one.place is not None]
+    moving = SX([0.0 if one.anchored else 1.0 for one in places] + [0.0] * len(held))
+    start = stage.at(stage.functions.held, points[0]) * moving
+    labels, zero = held_labels(held), Interval(0.0, 0.0)
+    return [
+        _rows(
+            labels,
+            ca.vertsplit(stage.at(stage.functions.held, point) - start),
+            [zero] * len(labels),
+            strip.fractions(np.array([node.fraction])).T,
+        )
+        for node, point in zip(strip.transcription.nodes[1:], points[1:], strict=True)
+    ]
 
 
 def _defect_rows(layout: PhaseLayout, strip: Strip, collocation: Collocation) -> Rows:
@@ -179,10 +208,19 @@ def _defect_rows(layout: PhaseLayout, strip: Strip, collocation: Collocation) ->
     )
 
 
-def _bound_rows(layout: PhaseLayout, names: Sequence[str], values: SX, where: Array) -> Rows:
-    """Bounds on what is no variable here, as rows."""
+def _bound_rows(
+    layout: PhaseLayout, names: Sequence[str], values: SX, where: Array, *, of_nodes: bool = False
+) -> Rows:
+    """Bounds on what is no variable here, as rows.
+
+    What is made ``of_nodes`` alone is fixed where these are, and needs no row then.
+    """
     bounds = layout.phase.bounds
-    bounded = [i for i, name in enumerate(names) if bounds[name].finite]
+    bounded = [
+        i
+        for i, name in enumerate(names)
+        if bounds[name].finite and not (of_nodes and bounds[name].fixed)
+    ]
     return _rows(
         [f"bound {names[i]}" for i in bounded],
         [values[i] for i in bounded],

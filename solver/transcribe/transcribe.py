@@ -15,7 +15,7 @@ from solver.trajectory import Trajectory
 from solver.transcribe.ends import join_ends
 from solver.transcribe.layout import PhaseLayout
 from solver.transcribe.place import Placer, place_statics
-from solver.transcribe.segments import knot_group, segment_group, segment_nodes
+from solver.transcribe.segments import knot_group, segment_group
 from solver.transcriptions.base import Transcription
 
 
@@ -23,7 +23,7 @@ from solver.transcriptions.base import Transcription
 class Transcribed:
     """The program, and what is needed to read trajectories out of its variables.
 
-    For each phase and each strip of it: ``nodes`` is a function (see ``segments.segment_nodes``),
+    For each phase and each strip of it: ``nodes`` is a function (see ``segments.segment_group``),
     ``segments`` the stage group whose columns and data are its arguments.
     """
 
@@ -58,10 +58,9 @@ def transcribe(model: Model, setting: Setting) -> Transcribed:
     segments, nodes = [], []
     for index, (layout, own) in enumerate(zip(layouts, functions, strict=True)):
         weights = joint.weights[index]
-        segments.append(
-            tuple(segment_group(index, layout, strip, own, weights) for strip in layout.strips)
-        )
-        nodes.append(tuple(segment_nodes(layout, strip, own) for strip in layout.strips))
+        pairs = [segment_group(index, layout, strip, own, weights) for strip in layout.strips]
+        segments.append(tuple(group for group, _ in pairs))
+        nodes.append(tuple(read for _, read in pairs))
     knots = _knots(layouts, functions, len(joint.lifted) + 1)
     groups = (*(group for phase in segments for group in phase), *knots, *joint.groups)
     program = Program(variables, groups, joint.lifted)

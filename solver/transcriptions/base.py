@@ -21,13 +21,16 @@ Array = NDArray[np.float64]
 class Node:
     """A node of a segment at ``fraction`` in [0, 1]; whether it carries decision variables.
 
-    ``algebraic`` variables stand wherever the dynamics or the integrands are evaluated.
+    ``algebraic`` variables stand wherever the dynamics or the integrands are evaluated. ``native``
+    names the orders of the derivatives that are variables here, of a method that differentiates
+    its own curves; they belong to the segment alone.
     """
 
     fraction: float
     state: bool = True
     control: bool = True
     algebraic: bool = True
+    native: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +49,7 @@ class Point:
 
 @dataclass(frozen=True, slots=True)
 class Segment:
-    """A segment as symbols. Where a node carries no variable, ``x``, ``u`` or ``z`` is empty.
+    """A segment as symbols. Of its points, what carries no variable is empty.
 
     ``derivative`` gives the rates of the states at a point; ``flow`` the states of a closed form
     at a time, from its natives.

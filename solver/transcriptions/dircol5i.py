@@ -1,6 +1,7 @@
 """DirCol5i: quintic Hermite splines for implicit second-order systems (003, sections 8.4, 8.12)."""
 
 from collections.abc import Sequence
+from math import factorial
 from typing import Any
 
 import casadi as ca
@@ -11,6 +12,7 @@ from solver.mesh.polynomials import from_powers
 from solver.transcriptions.base import Array, Collocation, Node, Point, Segment, Transcription
 
 _INNER = np.sqrt(5.0) / 10.0
+_LEFT, _RIGHT = 0.5 - _INNER, 0.5 + _INNER
 
 
 class DirCol5i(Transcription):
@@ -19,6 +21,12 @@ class DirCol5i(Transcription):
     The knots carry position, velocity and acceleration, control and control rate. The dynamics
     hold, as they are written, at the four Gauss-Lobatto points of each segment, where integrals
     are summed up too (8.15, 8.17); higher derivatives are those of the splines.
+
+    The quintic of the seed follows from both its knots, and its fourth derivative is a difference
+    of positions over h^4: round-off, and curvatures of the objective over h^8, end that on short
+    segments. Here jerk and snap of each segment are variables of their own, the quintic is its
+    Taylor series from the first knot, and to arrive at the second one is the defect. It is the
+    same spline, by equations that stay well conditioned.
     """
 
     order = 6
@@ -26,24 +34,25 @@ class DirCol5i(Transcription):
     native = True
     nodes = (
         Node(0.0),
-        Node(0.5 - _INNER, state=False, control=False),
-        Node(0.5 + _INNER, state=False, control=False),
+        Node(_LEFT, state=False, control=False, native=(3, 4)),
+        Node(_RIGHT, state=False, control=False, native=(4,)),
         Node(1.0),
     )
     weights = (1 / 12, 5 / 12, 5 / 12, 1 / 12)
 
     def collocate(self, segment: Segment) -> Collocation:
         """The splines at the four points; the dynamics are constraints along the phase."""
-        a, *_, b = segment.points
+        a, left, right, b = segment.points
         h = segment.h
-        position = _quintic(_split(a.x, 3), _split(b.x, 3), h)
+        position = [*_split(a.x, 3), *_higher(left.natives, right.natives, h)]
         ends = _split(a.u, 2), _split(b.u, 2)
-        control = _cubic(*ends, h)
+        control = [power * factorial(k) / h**k for k, power in enumerate(_cubic(*ends, h))]
         points = tuple(
             _at(node, point, position, control, h)
             for node, point in zip(self.nodes, segment.points, strict=True)
         )
-        return Collocation(points, SX(0, 1), self.weighted(points), _hull(*ends, h))
+        defects = ca.vertcat(*(_taylor(position, order, h) for order in range(3))) - b.x
+        return Collocation(points, defects, self.weighted(points), _hull(*ends, h))
 
     def state_curve(self, x: Array, f: Array, h: Array) -> Array:
         """The splines, their first and their second derivatives."""
@@ -70,10 +79,19 @@ class DirCol5i(Transcription):
         )
 
 
+def _higher(left: SX, right: SX, h: SX) -> list[SX]:
+    """Third to fifth derivatives at the segment's start, from those at its inner points."""
+    (jerk, snap), last = _split(left, 2), right
+    slope = (last - snap) / ((_RIGHT - _LEFT) * h)
+    start = snap - slope * (_LEFT * h)
+    return [jerk - start * (_LEFT * h) - slope * (_LEFT * h) ** 2 / 2, start, slope]
+
+
 def _at(node: Node, point: Point, position: Sequence[SX], control: Sequence[SX], h: SX) -> Point:
     """The splines and their derivatives at a node."""
-    q, v, a, jerk, snap = (_derivative(position, k, node.fraction, h) for k in range(5))
-    u, rate, curvature = (_derivative(control, k, node.fraction, h) for k in range(3))
+    s = node.fraction * h
+    q, v, a, jerk, snap = (_taylor(position, k, s) for k in range(5))
+    u, rate, curvature = (_taylor(control, k, s) for k in range(3))
     knot = node.state
     return Point(
         point.x if knot else ca.vertcat(q, v, a),
@@ -84,13 +102,12 @@ def _at(node: Node, point: Point, position: Sequence[SX], control: Sequence[SX],
     )
 
 
-def _derivative(powers: Sequence[Any], order: int, s: float, h: Any) -> Any:
-    """A derivative in time of a polynomial in s = (t - start) / h, given by its coefficients."""
-    total = 0.0
-    for k in range(order, len(powers)):
-        factor = float(np.prod(np.arange(k - order + 1, k + 1)))
-        total = total + factor * s ** (k - order) * powers[k]
-    return total / h**order
+def _taylor(derivatives: Sequence[SX], order: int, s: SX) -> SX:
+    """A derivative of a polynomial a time s after the point where all of its own are given."""
+    total = SX(0)
+    for k, term in enumerate(derivatives[order:]):
+        total = total + term * (s**k / factorial(k))
+    return total
 
 
 def _quintic(start: Sequence[Any], end: Sequence[Any], h: Any) -> list[Any]:

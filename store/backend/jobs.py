@@ -16,7 +16,7 @@ from store import cursors
 from store.backend import codec, keys, scripts
 from store.backend.connection import translated
 from store.backend.listing import entries
-from store.moves import Changes, allowed, ending, is_due
+from store.moves import Changes, allowed, ending, is_asked, is_due
 from store.ports import JobRecord, Page
 from store.settings import StoreSettings
 
@@ -41,7 +41,7 @@ class RedisJobs:
         with self._client.pipeline() as pipe:
             pipe.hset(keys.record(record.id), mapping=cast(Any, codec.record_fields(record)))
             pipe.set(keys.problem(record.id), codec.pack(problem))
-            if record.kind is JobKind.SOLVE:
+            if record.kind is not JobKind.SWEEP_CHUNK:
                 pipe.zadd(keys.owner(record.owner), {record.id: record.created})
             pipe.sadd(keys.LIVE, record.id)
             pipe.xadd(keys.events(record.id), {"event": event})
@@ -73,6 +73,7 @@ class RedisJobs:
         *,
         status: JobStatus | None = None,
         name: str | None = None,
+        kind: JobKind | None = None,
         cursor: str | None = None,
         limit: int = 50,
     ) -> Page:
@@ -83,7 +84,7 @@ class RedisJobs:
             chunk = self._chunk(owner, after)
             for created, job_id, record in chunk:
                 after = (created, job_id)
-                if record and status in (None, record.status) and name in (None, record.name):
+                if record and is_asked(record, status, name, kind):
                     found.append(record)
                 if len(found) == limit:
                     return Page(found, cursors.encode(*after))

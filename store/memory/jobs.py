@@ -12,7 +12,7 @@ from schemas.events import StateChanged
 from schemas.jobs import TERMINAL, JobError, JobKind, JobStatus, JobTimings, Progress
 from store import cursors
 from store.memory.shelf import Entry, Shelf
-from store.moves import Changes, allowed, ending, is_due
+from store.moves import Changes, allowed, ending, is_asked, is_due
 from store.ports import JobRecord, Page
 
 
@@ -57,6 +57,7 @@ class MemoryJobs:
         *,
         status: JobStatus | None = None,
         name: str | None = None,
+        kind: JobKind | None = None,
         cursor: str | None = None,
         limit: int = 50,
     ) -> Page:
@@ -68,9 +69,8 @@ class MemoryJobs:
             record
             for record in records
             if record.owner == owner
-            and record.kind is JobKind.SOLVE
-            and status in (None, record.status)
-            and name in (None, record.name)
+            and record.kind is not JobKind.SWEEP_CHUNK
+            and is_asked(record, status, name, kind)
             and (after is None or (record.created, record.id) < after)
         ]
         found.sort(key=lambda record: (record.created, record.id), reverse=True)

@@ -63,3 +63,11 @@ def test_what_an_import_must_not_load(module: str, absent: set[str]) -> None:
     code = f"import sys, {module}; print(*sys.modules)"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert not absent & {name.split(".")[0] for name in run.stdout.split()}
+
+
+def test_the_engine_loads_scipy_where_it_is_needed() -> None:
+    """Its parts take longer to load than most problems to be built and solved."""
+    code = "import sys, solver; print(*sys.modules)"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    parts = ("integrate", "interpolate", "linalg", "optimize", "sparse", "spatial", "special")
+    assert not {f"scipy.{part}" for part in parts} & set(run.stdout.split())

@@ -119,3 +119,15 @@ def test_an_acceptable_point_beats_a_lower_one_without_a_claim() -> None:
     won, _ = solve(posed(block()).task, attempt=lambda _, strategy: ends[strategy.name])
     assert won.strategy == ADAPTIVE
     assert won.outcome.status is NlpStatus.ACCEPTABLE
+
+
+def test_the_default_is_tried_where_another_came_first() -> None:
+    task = posed(block()).task
+    solver, heard = make_backend("ipopt"), list[str]()
+    portfolio = Portfolio(
+        solver, SolverSettings(), lambda task, _: run("ipopt", task), watched, heard.append
+    )
+    won = portfolio.solve(task, run("ipopt", task, iterations=0), Strategy(ADAPTIVE, adaptive=True))
+    assert heard == ["again, default"]
+    assert won.strategy == "default"
+    assert won.attempts == (f"{ADAPTIVE}: iteration limit after 0 iterations",)

@@ -45,7 +45,8 @@ def replace(page: Page, old: str, new: str) -> None:
 
 def test_it_shows_what_there_is(console: Page, complaints: list[str]) -> None:
     expect(console.locator("#state")).to_contain_text("Workers: 1")
-    assert console.locator("#example option").count() == len(examples.names())
+    names = [*examples.names(), *examples.simulations()]
+    assert console.locator("#example option").count() == len(names)
     console.select_option("#example", "cart_pole")
     expect(console.locator("#about")).to_contain_text("cart")
     assert complaints == []
@@ -56,7 +57,7 @@ def test_an_example_is_posted_seen_to_end_and_reported(
 ) -> None:
     console.select_option("#example", "cart_pole")
     expect(console.locator("#problem")).to_have_value(re.compile("cart-pole swing-up"))
-    console.get_by_role("button", name="Solve").click()
+    console.get_by_role("button", name="Run").click()
     expect(console.locator("#answer")).to_contain_text("Queued as")
     row = console.locator("#jobs tr").first
     expect(row).to_contain_text("cart-pole swing-up")
@@ -69,9 +70,25 @@ def test_an_example_is_posted_seen_to_end_and_reported(
     assert complaints == []
 
 
+def test_a_simulation_is_posted_and_its_motion_shown(console: Page, complaints: list[str]) -> None:
+    console.select_option("#example", "bouncing_ball")
+    expect(console.locator("#problem")).to_have_value(re.compile("bouncing ball"))
+    console.get_by_role("button", name="Run").click()
+    row = console.locator("#jobs tr").first
+    expect(row).to_contain_text("bouncing ball")
+    expect(row).to_contain_text("simulation, ")
+    expect(row).to_contain_text("succeeded", timeout=SECONDS)
+    expect(row).to_contain_text("finished")
+    row.get_by_role("link", name="report.html").click()
+    expect(console.locator(".player")).to_be_visible()
+    console.get_by_role("button", name="Play").click()
+    expect(console.locator(".clock")).not_to_have_text("0.000 s")
+    assert complaints == []
+
+
 def test_an_edited_problem_is_the_one_that_is_solved(console: Page, url: str) -> None:
     replace(console, '"name": "', '"name": "mine: <b>')
-    console.get_by_role("button", name="Solve").click()
+    console.get_by_role("button", name="Run").click()
     expect(console.locator("#jobs tr").first).to_contain_text("mine: <b>")
     expect(console.locator("#jobs tr").first).to_contain_text("succeeded", timeout=SECONDS)
     with Client(url) as client:
@@ -97,12 +114,12 @@ def test_a_refused_problem_names_place_reason_and_mend(console: Page) -> None:
     expect(console.locator("#problem")).to_have_value(re.compile("cart-pole swing-up"))
     expect(console.locator("#problem")).to_have_value(re.compile("cart-pole swing-up"))
     replace(console, '"effort": "u^2"', '"effort": "uu^2"')
-    console.get_by_role("button", name="Solve").click()
+    console.get_by_role("button", name="Run").click()
     issue = console.locator("#issues li")
     expect(issue).to_contain_text("/phases/0/integrals/effort, column 1: unknown name 'uu'")
     expect(issue).to_contain_text("did you mean 'u'?")
     console.locator("#problem").fill("{")
-    console.get_by_role("button", name="Solve").click()
+    console.get_by_role("button", name="Run").click()
     expect(issue).to_contain_text("not JSON")
 
 
@@ -111,7 +128,7 @@ def test_a_running_job_is_cancelled(console: Page) -> None:
     slow["method"] = {"kind": "trapezoidal", "segments": 5000}
     console.locator("#post-form summary").click()
     console.locator("#problem").fill(json.dumps(slow))
-    console.get_by_role("button", name="Solve").click()
+    console.get_by_role("button", name="Run").click()
     row = console.locator("#jobs tr").first
     expect(row).to_contain_text("running", timeout=SECONDS)
     row.get_by_role("button", name="cancel").click()

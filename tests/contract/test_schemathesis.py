@@ -120,6 +120,7 @@ def ended_sweep() -> str:
 
 SWEEPS = cycle([sweep, ended_sweep, None])
 GALLERY = cycle([None, None, *map(examples.load, examples.names())])
+SIMULATIONS = cycle([None, *map(examples.load, examples.simulations())])
 LIVE, ENDED = cycle([queued, solved, running, solved, failed, None]), cycle([solved, failed, None])
 
 
@@ -153,6 +154,8 @@ def map_query(context: HookContext, query: Any) -> Any:
 @schema.hook
 def map_body(context: HookContext, body: Any) -> Any:
     """Post good problems too; no generator writes one."""
+    if path_of(context) == "/v1/simulations":
+        return next(SIMULATIONS) or body
     problem = next(GALLERY)
     if problem and path_of(context) == "/v1/sweeps":
         return {"problem": problem, "grid": {"/phases/0/name": ["one", "two"]}}

@@ -1,6 +1,7 @@
 """The seeds' tables: one command solves and writes them, and what is written has every row."""
 
 import re
+from functools import partial
 from pathlib import Path
 from random import Random
 
@@ -9,13 +10,15 @@ import pytest
 import examples
 from benchmarks.reproduce.__main__ import DOCUMENT, PICTURE, main
 from benchmarks.reproduce.judge import judge
-from benchmarks.reproduce.measure import document, measure
+from benchmarks.reproduce.measure import document, measure, run_from
 from benchmarks.reproduce.pictures import SLIDE, STICKS, draw
 from benchmarks.reproduce.rows import Measured, Row
 from benchmarks.reproduce.scenarios import choose, problem, random_start, scenarios
 from benchmarks.reproduce.slip_sums import least_sums
 from benchmarks.reproduce.tables import TABLES
+from schemas.problem import Problem
 from schemas.reading import read_problem
+from schemas.results import Solution, SolutionStatus
 from solver import solve
 
 ROOT = Path(__file__).parents[2]
@@ -91,6 +94,32 @@ def test_the_seeds_sums() -> None:
     sums = least_sums()
     assert sums["actuation"] == pytest.approx(0.2050505, abs=1e-7)
     assert sums["work"] == pytest.approx(0.280342, abs=1e-6)
+
+
+def test_a_run_from_a_random_guess_counts_where_it_is_certified(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    solution = solve(read_problem(examples.load("slip_str") | {"refinement": None}))
+    whole: list[Problem] = []
+
+    def solved(problem: Problem, status: SolutionStatus, verdict: str) -> Solution:
+        whole.append(problem)
+        certificate = solution.certificate.model_copy(update={"verdict": verdict})
+        return solution.model_copy(update={"status": status, "certificate": certificate})
+
+    counted = []
+    for status, verdict in (
+        (SolutionStatus.CONVERGED, "certified"),
+        (SolutionStatus.MESH_LIMIT, "certified"),
+        (SolutionStatus.CERTIFICATE_FAILED, "not_certified"),
+    ):
+        monkeypatch.setattr(
+            "benchmarks.reproduce.measure.solve", partial(solved, status=status, verdict=verdict)
+        )
+        counted.append(run_from("slip_str", seed=5)[1])
+    assert counted == [True, False, False]
+    assert [len(problem.stages) for problem in whole] == [3, 3, 3], "all steps"
+    assert all(problem.guess.kind == "random" for problem in whole)
 
 
 def test_the_last_stage_alone_is_refined() -> None:

@@ -1,4 +1,4 @@
-"""An engine for tests of the worker: it does what the problem's name says, at once.
+"""Engines for tests of the worker: they do what the document's name says, at once.
 
 ``quick`` solves; ``gated`` waits for the file FOOTFALL_TEST_GATE, or to be stopped; ``deaf``
 waits for the same and cannot be stopped; ``deadly`` kills its own process; ``hungry`` allocates
@@ -12,7 +12,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from schemas.errors import InvalidModel, Issue
-from schemas.events import EngineEvent, MeshSolved, NlpIteration, StageStarted
+from schemas.events import Advanced, EngineEvent, MeshSolved, NlpIteration, StageStarted
 from schemas.problem import Problem
 from schemas.results import (
     Certificate,
@@ -23,6 +23,9 @@ from schemas.results import (
     SolverReport,
     Timing,
 )
+from schemas.simulated import SimulationResult, SimulationStatus, SimulationTiming
+from schemas.simulations import Simulation
+from worker.attempt import Engines
 
 Ask = Callable[[], bool]
 Tell = Callable[[EngineEvent], None]
@@ -56,6 +59,42 @@ def scripted(
         case "chatty":
             _chatty(on_event)
     return solution(problem.name, status)
+
+
+def simulated(
+    simulation: Simulation, on_event: Tell, deadline: float, should_stop: Ask
+) -> SimulationResult:
+    """Act by the simulation's name: ``gated``, ``broken`` and ``senseless`` as above."""
+    on_event(StageStarted(stage="simulate"))
+    status = SimulationStatus.FINISHED
+    match simulation.name:
+        case "gated":
+            on_event(Advanced(time=0.5, end=2.0))
+            status = _OF_SOLVE[_gated(deadline, should_stop)]
+        case "broken":
+            raise RuntimeError("the integrator broke")
+        case "senseless":
+            raise InvalidModel([Issue("/system", "The loops cannot close.", "Look again.")])
+    return motion(simulation.name, status)
+
+
+def motion(name: str, status: SimulationStatus) -> SimulationResult:
+    """The result of a simulation without phases."""
+    return SimulationResult(
+        name=name,
+        status=status,
+        message=f"ended as {status}",
+        phases=[],
+        timing=SimulationTiming(build=0.0, simulate=0.0, total=0.0),
+        reproduce=Reproduce(spec_sha256="", versions={}),
+    )
+
+
+_OF_SOLVE = {
+    SolutionStatus.CONVERGED: SimulationStatus.FINISHED,
+    SolutionStatus.CANCELLED: SimulationStatus.CANCELLED,
+    SolutionStatus.TIME_LIMIT: SimulationStatus.TIME_LIMIT,
+}
 
 
 def solution(name: str, status: SolutionStatus) -> Solution:
@@ -117,3 +156,6 @@ def _chatty(on_event: Tell) -> None:
                 seconds=0.0,
             )
         )
+
+
+ENGINES = Engines(scripted, simulated, page)

@@ -14,8 +14,10 @@ from typing import Any, TypeVar
 import pytest
 
 from schemas.events import StateChanged
-from schemas.jobs import TERMINAL, JobStatus
+from schemas.jobs import TERMINAL, JobKind, JobStatus
+from schemas.problem import Problem
 from schemas.reading import canonical, read_problem
+from schemas.simulations import Simulation, read_simulation
 from store import connect
 from store.backend.connection import open_client
 from store.embedded import EmbeddedServer
@@ -48,6 +50,19 @@ BLOCK: dict[str, Any] = {
 }
 
 
+# The same block, thrown: the smallest simulation.
+THROW: dict[str, Any] = {
+    "name": "throw",
+    "system": {
+        "kind": "ode",
+        "states": ["y", "v"],
+        "derivatives": {"y": "v", "v": "-9.81"},
+    },
+    "initial": {"v": 9.81},
+    "duration": 1.5,
+}
+
+
 def wait_until(look: Callable[[], T | None], seconds: float = 10.0, what: str = "") -> T:
     """What ``look`` gives as soon as it is true; fails after so many seconds."""
     end = time.monotonic() + seconds
@@ -62,17 +77,28 @@ def wait_until(look: Callable[[], T | None], seconds: float = 10.0, what: str = 
 def submit(store: Store, name: str = "block", owner: str = "local", **changes: Any) -> str:
     """Store and queue the block under a name (the scripted engine acts by it); the job's id."""
     problem = read_problem({**BLOCK, "name": name, **changes})
+    return _queue(store, problem, owner, JobKind.SOLVE)
+
+
+def submit_simulation(store: Store, name: str = "throw", **changes: Any) -> str:
+    """Store and queue the throw under a name; the job's id."""
+    simulation = read_simulation({**THROW, "name": name, **changes})
+    return _queue(store, simulation, "local", JobKind.SIMULATION)
+
+
+def _queue(store: Store, document: Problem | Simulation, owner: str, kind: JobKind) -> str:
     record = JobRecord(
         id=uuid.uuid4().hex,
         owner=owner,
-        name=name,
+        name=document.name,
         spec_sha256="0" * 64,
         status=JobStatus.QUEUED,
         created=time.time(),
-        seconds=problem.limits.seconds,
-        megabytes=problem.limits.megabytes,
+        seconds=document.limits.seconds,
+        megabytes=document.limits.megabytes,
+        kind=kind,
     )
-    store.jobs.create(record, canonical(problem))
+    store.jobs.create(record, canonical(document))
     store.queue.enqueue(record.id)
     store.durable()
     return record.id

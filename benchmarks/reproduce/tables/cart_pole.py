@@ -57,21 +57,12 @@ _WHY: dict[tuple[str, str], str] = {
     ("snap", "Radau"): f"the seed's did not converge; {_SADDLE}",
     ("snap", "trapezoidal"): f"the seed calls its 10.22 far sub-optimal; {_SADDLE}",
 }
-_ONE_MESH: Patch = {
-    "method": {"kind": "dircol5i", "segments": 100},
-    "refinement": {"tolerance": 1e-6, "max_iterations": 1},
-}
-"""Jerk and snap of the tip: a uniform mesh serves splines of degree five better."""
 
 
 def _tolerance(objective: str, method: str) -> float:
-    if objective in ("jerk", "snap"):
-        return 1e-4
-    return 5e-5 if method == "trapezoidal" else 1e-6
-
-
-def _refined(objective: str, method: str) -> Patch:
-    return _ONE_MESH if method == "DirCol5i" and objective in ("jerk", "snap") else {}
+    if method == "trapezoidal":
+        return 5e-5
+    return 1e-5 if objective in ("jerk", "snap") else 1e-6
 
 
 CART_POLE_DERIVATIVES = Table(
@@ -88,7 +79,6 @@ CART_POLE_DERIVATIVES = Table(
             printed_seconds=seconds,
             optimum=_OPTIMA[objective],
             tolerance=_tolerance(objective, method),
-            refined=_refined(objective, method),
             why=_WHY.get((objective, method), ""),
         )
         for objective, cells in _TABLE_8_3.items()

@@ -2,7 +2,7 @@
 
 from math import pi
 
-from benchmarks.reproduce.rows import Patch, Row, Table
+from benchmarks.reproduce.rows import Row, Table
 
 METHODS = {
     "DirCol5i": {"kind": "dircol5i", "segments": 12},
@@ -45,8 +45,8 @@ WHY: dict[tuple[str, str, bool], str] = {
     ("DirCol5i", "snap", False): "the printed 0.0377 is not optimal: the cubic has no snap at all",
     ("DirCol5i", "torque", True): _SPLINE,
     ("DirCol5i", "jerk", True): _SPLINE,
-    ("DirCol5i", "snap", True): _SPLINE + ". The snap jumps where the torque leaves its limit, "
-    "and a cubic control is of first order there: a thousandth above on 100 segments",
+    ("DirCol5i", "snap", True): _SPLINE + ". The fourth derivative of a quintic is of second "
+    "order: seven hundredths above on twelve segments",
     ("Radau", "acceleration", False): "the seed's diverged between its points",
     ("Radau", "jerk", False): "the seed's diverged between its points",
     ("Radau", "acceleration", True): "the printed 8.06 lies below any feasible value",
@@ -55,23 +55,12 @@ WHY: dict[tuple[str, str, bool], str] = {
     ("trapezoidal", "torque_rate", True): "the seed's stopped at an infeasible point",
     ("trapezoidal", "jerk", True): "the printed 43.1 is far above, another motion it seems",
     ("trapezoidal", "snap", True): "the printed 1220 is far above; the seed calls it sub-optimal",
-    ("Chebyshev", "snap", True): "the printed 205 is far above, and rings; "
-    "ours, with the torque bounded at few nodes, ends half a thousandth below the optimum",
-}
-
-
-_REFINED: dict[tuple[str, str, bool], Patch] = {
-    ("DirCol5i", "snap", True): {
-        "method": {"kind": "dircol5i", "segments": 100},
-        "refinement": {"tolerance": 1e-6, "max_iterations": 1},
-    },
+    ("Chebyshev", "snap", True): "the printed 205 is far above, and rings",
 }
 
 
 def _tolerance(method: str, objective: str, limited: bool) -> float:
     """Of the refined objective: smooth problems, those with switches, and methods of order 2."""
-    if objective == "snap" and limited and method in ("DirCol5i", "Chebyshev"):
-        return 1e-3
     if objective == "snap" and not limited:
         return 1e-7
     if limited:
@@ -90,7 +79,6 @@ def _row(method: str, objective: str, limited: bool) -> Row:
         printed_seconds=seconds,
         optimum=(_LIMITED if limited else _FREE)[objective],
         tolerance=_tolerance(method, objective, limited),
-        refined=_REFINED.get((method, objective, limited), {}),
         why=WHY.get((method, objective, limited), ""),
     )
 

@@ -9,9 +9,13 @@ OTHERWISE = 3
 INTERRUPTED = 130
 
 
+_WELL = frozenset({"converged", "finished", "stopped"})
+"""Of a solve; of a simulation that came to its end, or to an event that was to end it."""
+
+
 def of_status(status: str) -> int:
-    """The code for a result: 0 for a converged one, else 3."""
-    return CONVERGED if status == "converged" else OTHERWISE
+    """The code for a result: 0 for one that ended well, else 3."""
+    return CONVERGED if status in _WELL else OTHERWISE
 
 
 def of_error(error: FootfallError) -> int:

@@ -10,6 +10,7 @@ from footfall import local
 from footfall.cli import codes
 from footfall.cli.output import note, show_json
 from footfall.client import Client
+from footfall.documents import is_simulation
 from footfall.errors import BadFile
 from footfall.summary import table
 
@@ -34,6 +35,9 @@ def examples(options: argparse.Namespace) -> int:
 
 def uses(problem: Mapping[str, Any]) -> list[str]:
     """What of the language a problem shows: systems, methods, and what not every problem has."""
+    if is_simulation(problem):
+        method = problem.get("method") or {}
+        return ["simulation", problem["system"]["kind"], method.get("kind", "smooth")]
     phases = problem["phases"]
     systems = dict.fromkeys(phase["system"]["kind"] for phase in phases)
     own = [phase["method"] for phase in phases if phase.get("method")]

@@ -11,8 +11,9 @@ from typing import Any
 from footfall.cli import codes
 from footfall.documents import find
 from footfall.errors import BadFile, BadProblem, FootfallError, Issue
-from footfall.report import render
-from footfall.result import Result
+from footfall.report import render, render_motion, render_svg
+from footfall.result import Result, SimulationResult
+from footfall.simulated import simulation_in_words
 from footfall.summary import in_words
 
 _SHOWN = 76  # characters of a long expression around the caret
@@ -30,25 +31,43 @@ def note(words: str) -> None:
 
 
 def deliver(
-    result: Result,
-    *,
-    as_json: bool,
-    output: str | None = None,
-    report: str | None = None,
-    problem: Mapping[str, Any] | None = None,
+    result: Result, options: argparse.Namespace, problem: Mapping[str, Any] | None = None
 ) -> int:
     """Print the result, write the files asked for, and give the exit code of its status."""
-    if as_json:
+    if options.json:
         show_json(result.document)
     else:
-        print(in_words(result.document), flush=True)
-    if output:
-        write(output, json.dumps(result.document, allow_nan=False))
-        note(f"result written to {output}")
-    if report:
-        write(report, render(result.document, problem))
-        note(f"report written to {report}")
+        simulated = isinstance(result, SimulationResult)
+        print((simulation_in_words if simulated else in_words)(result.document), flush=True)
+    if options.output:
+        write(options.output, json.dumps(result.document, allow_nan=False))
+        note(f"result written to {options.output}")
+    draw(result, options, problem)
     return codes.of_status(result.status)
+
+
+def draw(
+    result: Result, options: argparse.Namespace, problem: Mapping[str, Any] | None = None
+) -> None:
+    """Write the report and the pictures that were asked for."""
+    if options.report:
+        write(options.report, render(result.document, problem))
+        note(f"report written to {options.report}")
+    if options.picture:
+        write(options.picture, render_svg(result.document, problem))
+        note(f"picture written to {options.picture}")
+    if options.motion:
+        write(options.motion, motion(result))
+        note(f"frames of the motion written to {options.motion}")
+
+
+def motion(result: Result) -> str:
+    """The picture of the motion. Raises ``BadFile`` where there is nothing to draw."""
+    drawn = render_motion(result.document)
+    if drawn is None:
+        hint = "Results of mechanisms and URDF systems have frames; others have curves only."
+        raise BadFile("The result has no frames of a motion.", hint)
+    return drawn
 
 
 def write(path: str, text: str) -> None:
@@ -61,8 +80,9 @@ def write(path: str, text: str) -> None:
         raise BadFile(f"{path} cannot be written: {error.strerror}.") from error
 
 
-def check_places(*paths: str | None) -> None:
+def check_places(options: argparse.Namespace) -> None:
     """Raise ``BadFile`` now for a file that could not be written after a long solve."""
+    paths = (options.output, options.report, options.picture, options.motion)
     for target in map(Path, filter(None, paths)):
         try:
             target.parent.mkdir(parents=True, exist_ok=True)

@@ -11,7 +11,7 @@ from rich.spinner import Spinner
 from rich.table import Table
 
 from footfall.sse import Event
-from footfall.summary import number, words
+from footfall.summary import number, plural, words
 
 Shown = Callable[[Event], None]
 
@@ -20,6 +20,7 @@ _STAGES = {
     "solve": "solving",
     "refine": "refining the mesh",
     "certify": "certifying",
+    "simulate": "simulating",
 }
 _PARTS = ("stage ", "guess ", "split ")  # notes on what begins anew, worth a line of their own
 _EVERY = 1.0  # seconds between two plain lines about iterations
@@ -58,9 +59,10 @@ class _Lines:
         if event.type == "state":
             said = "" if data["status"] == "failed" else data.get("message", "")  # an error says it
             return f"job {words(data['status'])}" + (f": {said}" if said else "")
-        if event.type == "nlp_iteration" and time.monotonic() - self._last >= _EVERY:
+        said = _step_words(event)
+        if said and time.monotonic() - self._last >= _EVERY:
             self._last = time.monotonic()
-            return f"  iteration {data['iteration']}: {_iteration_words(data)}"
+            return f"  {said}"
         return None
 
 
@@ -83,9 +85,8 @@ class _LiveTable:
             self._stage = words(event.data["status"])
         elif event.type == "mesh":
             self._meshes.append(event.data)
-        elif event.type == "nlp_iteration":
-            data = event.data
-            self._iteration = f"iteration {data['iteration']}: {_iteration_words(data)}"
+        elif said := _step_words(event):
+            self._iteration = said
 
     def __rich__(self) -> Group:
         self._spinner.update(text=f"{self._part}{self._stage}  {self._iteration}")
@@ -120,6 +121,16 @@ def _mesh_words(data: dict[str, Any]) -> str:
         f"{data['segments']} segments, max error {error} (tolerance {goal}), "
         f"objective {number(data['objective'], 10)}, {data['nlp_iterations']} iterations"
     )
+
+
+def _step_words(event: Event) -> str:
+    data = event.data
+    if event.type == "nlp_iteration":
+        return f"iteration {data['iteration']}: {_iteration_words(data)}"
+    if event.type == "advance":
+        happened = f", {plural(data['events'], 'event')}" if data["events"] else ""
+        return f"{number(data['time'], 4)} of {number(data['end'], 4)} s{happened}"
+    return ""
 
 
 def _iteration_words(data: dict[str, Any]) -> str:

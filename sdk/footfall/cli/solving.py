@@ -1,7 +1,9 @@
-"""``footfall solve`` and ``footfall validate``."""
+"""``footfall solve``, ``footfall simulate`` and ``footfall validate``."""
 
 import argparse
 import sys
+from collections.abc import Callable
+from typing import Any
 
 from footfall import local
 from footfall.cli import codes, jobs
@@ -16,29 +18,44 @@ from footfall.cli.output import (
     show_json,
 )
 from footfall.cli.progress import progress
-from footfall.documents import read_json
-from footfall.errors import BadProblem
+from footfall.documents import is_simulation, read_json
+from footfall.errors import BadFile, BadProblem
+from footfall.result import Result
 
 
 def solve(options: argparse.Namespace) -> int:
     """Solve in this process, or through a service; the first Ctrl-C keeps the best iterate."""
     problem = read_json(options.file)
-    check_places(options.output, options.report)
+    if is_simulation(problem):
+        words = f"{options.file} holds a simulation: a system without phases."
+        raise BadFile(words, f"footfall simulate {options.file}")
+    return _run(options, problem, local.solve)
+
+
+def simulate(options: argparse.Namespace) -> int:
+    """Simulate in this process, or through a service; the first Ctrl-C keeps what there is."""
+    simulation = read_json(options.file)
+    if "phases" in simulation:
+        words = f"{options.file} holds a problem: it has phases."
+        raise BadFile(words, f"footfall solve {options.file}")
+    return _run(options, simulation, local.simulate)
+
+
+def _run(options: argparse.Namespace, document: dict[str, Any], work: Callable[..., Result]) -> int:
+    check_places(options)
     if options.server:
-        return jobs.solve_through(options, problem)
+        return jobs.run_through(options, document)
     try:
         with Interrupt() as interrupt, progress(sys.stderr) as shown:
-            result = local.solve(problem, on_event=shown, should_stop=interrupt.asked)
+            result = work(document, on_event=shown, should_stop=interrupt.asked)
     except BadProblem as error:
-        return refuse(error, problem, options)
-    code = deliver(
-        result, as_json=options.json, output=options.output, report=options.report, problem=problem
-    )
+        return refuse(error, document, options)
+    code = deliver(result, options, document)
     return codes.INTERRUPTED if interrupt.asked() else code
 
 
 def validate(options: argparse.Namespace) -> int:
-    """Check a problem; print every issue with its place in the user's own text."""
+    """Check a problem or simulation; print every issue with its place in the user's own text."""
     problem = read_json(options.file)
     if options.server:
         with jobs.client(options) as client:

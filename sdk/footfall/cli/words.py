@@ -5,7 +5,7 @@ import sys
 from collections.abc import Callable, Mapping
 from importlib.metadata import version
 
-from footfall.cli import codes, gallery, jobs, service, solving, sweeping
+from footfall.cli import codes, drawing, gallery, jobs, service, solving, sweeping
 from footfall.client import DEFAULT_URL
 
 Run = Callable[[argparse.Namespace], int]
@@ -14,10 +14,12 @@ _ABOUT = "Trajectory optimization, also through contact, as a service or in this
 _START = """start here:
   footfall examples                    what there is to solve
   footfall solve FILE                  solve a problem in this process
+  footfall simulate FILE               simulate a system in this process
   footfall serve                       keep a service running
   footfall submit FILE --watch         solve through the service
 
-exit codes: 0 done and converged, 3 finished otherwise, 2 bad problem, 1 fault, 130 interrupted"""
+exit codes: 0 converged, or simulated to its end; 3 finished otherwise, 2 bad problem, 1 fault,
+130 interrupted"""
 
 
 class _Words:
@@ -84,10 +86,20 @@ def _solving(words: _Words) -> None:
     _files(solve)
     through = "solve through this service instead of in this process"
     solve.add_argument("--server", metavar="URL", help=through)
+    simulate = words.command(
+        "simulate",
+        solving.simulate,
+        "simulate a system and wait for the result",
+        "footfall simulate my_simulation.json --report motion.html",
+    )
+    simulate.add_argument("file", metavar="FILE", help="the simulation's JSON file, or - for stdin")
+    _files(simulate)
+    through = "simulate through this service instead of in this process"
+    simulate.add_argument("--server", metavar="URL", help=through)
     validate = words.command(
         "validate",
         solving.validate,
-        "check a problem without solving it",
+        "check a problem or simulation without running it",
         "footfall validate my_problem.json",
     )
     _problem(validate)
@@ -106,12 +118,12 @@ def _jobs(words: _Words) -> None:
     submit = words.remote(
         "submit",
         jobs.submit,
-        "queue a problem at the service and print the job's id",
+        "queue a problem or simulation at the service and print the job's id",
         "footfall submit my_problem.json --watch",
     )
     _problem(submit)
     submit.add_argument("--watch", action="store_true", help="follow it and print the result")
-    warm = "start from the solution of this job of yours"
+    warm = "start from the solution of this job of yours; of a simulation: its controls"
     submit.add_argument("--guess-from", metavar="JOB", help=warm)
     watch = words.remote(
         "watch", jobs.watch, "follow a job to its end and print the result", "footfall watch ID"
@@ -120,6 +132,7 @@ def _jobs(words: _Words) -> None:
     for command in (submit, watch):
         _files(command)
     listed = words.remote("jobs", jobs.jobs, "list your latest jobs", "footfall jobs --limit 5")
+    listed.add_argument("--kind", choices=("solve", "simulation"), help="only these")
     listed.add_argument("--limit", type=_count, default=20, help="how many (default: 20)")
     cancel = words.remote(
         "cancel", jobs.cancel, "cancel a job; it keeps its best iterate", "footfall cancel ID"
@@ -134,6 +147,16 @@ def _jobs(words: _Words) -> None:
     )
     result.add_argument("id", help="the job's id")
     _files(result)
+    report = words.command(
+        "report",
+        drawing.report,
+        "draw a result that was kept: the page, or pictures",
+        "footfall report result.json --motion motion.svg > page.html",
+    )
+    report.add_argument("file", metavar="FILE", help="the result's JSON file, or - for stdin")
+    report.add_argument("--problem", metavar="FILE", help="what it came of: its bounds are drawn")
+    report.set_defaults(output=None)
+    _drawn(report)
 
 
 def _sweeps(words: _Words) -> None:
@@ -194,7 +217,13 @@ def _problem(command: argparse.ArgumentParser) -> None:
 
 def _files(command: argparse.ArgumentParser) -> None:
     command.add_argument("--output", metavar="FILE", help="write the result's JSON here too")
+    _drawn(command)
+
+
+def _drawn(command: argparse.ArgumentParser) -> None:
     command.add_argument("--report", metavar="FILE", help="write the report's HTML here")
+    command.add_argument("--picture", metavar="FILE", help="write the curves as SVG here")
+    command.add_argument("--motion", metavar="FILE", help="write frames of the motion as SVG here")
 
 
 def _port(text: str) -> int:

@@ -121,6 +121,11 @@ class Plot {
 }
 
 let current = null;
-function show(t) { current = t; plots.forEach((plot) => plot.show(t)); }
+const followers = []; // what else shows the time under the pointer, and may lead it
+function show(t, leader) {
+  current = t;
+  plots.forEach((plot) => plot.show(t));
+  followers.forEach((follow) => follow(t, leader));
+}
 function hide() { current = null; plots.forEach((plot) => plot.hide()); }
 document.querySelectorAll(".canvas[data-figure]").forEach((canvas) => plots.push(new Plot(canvas)));

@@ -1,4 +1,4 @@
-"""The figure of a result as one SVG file, for a README or a slide."""
+"""The figures of a result as SVG files, for a README or a slide."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -6,8 +6,11 @@ from typing import Any
 from footfall.report.drawing import frame
 from footfall.report.figures import Figure, mesh_errors, trajectories
 from footfall.report.markup import Markup, asset, el
+from footfall.report.motion import motion_of
 from footfall.report.phases import COSTATES
 from footfall.report.scales import scientific
+from footfall.report.strobe import strobe
+from footfall.report.strobe import words as shown
 from footfall.summary import VERDICTS, plural, published_mesh, words
 
 _WIDTH, _LEFT, _RIGHT = 960, 76, 36
@@ -25,12 +28,26 @@ def render_svg(
     found = trajectories(result["phases"], problem)
     figures = [figure for figure in found if figure.group != COSTATES]
     heights = [220 if index == 0 else 140 for index in range(len(figures))]
-    steps = mesh_errors(result["mesh_refinement"]) if errors else None
+    refinement = result.get("mesh_refinement")
+    steps = mesh_errors(refinement) if errors and refinement else None
     if steps:
         figures.append(steps)
         heights.append(150)
-    said = f"{result['name']}: trajectory and mesh errors"
+    said = f"{result['name']}: trajectory" + (" and mesh errors" if steps else "")
     return compose(result["name"], _facts(result), figures, heights, said)
+
+
+def render_motion(result: Mapping[str, Any]) -> str | None:
+    """Several frames of a result's motion over one another as one standalone SVG.
+
+    As ``render_svg``; None where the result has no bodies to draw.
+    """
+    motion = motion_of(result)
+    if motion is None:
+        return None
+    across = _WIDTH - _LEFT - _RIGHT
+    drawn, height = strobe(motion, across, (_LEFT, _HEAD - 32))
+    return _card(result["name"], shown(motion), [drawn], _HEAD + height, result["name"])
 
 
 def compose(
@@ -45,10 +62,15 @@ def compose(
     for figure, height in zip(figures, heights, strict=True):
         parts += [*_legend(figure, top - 18), _frame(figure, top, height)]
         top += height + _GAP
-    total = top - _GAP + 52
+    return _card(heading, facts, parts, top - _GAP + 52, said or heading)
+
+
+def _card(heading: str, facts: str, parts: Sequence[Markup], total: float, said: str) -> Markup:
+    """The parts under a heading, on paper."""
+    total = round(total)
     return el(
         "svg",
-        el("title", said or heading),
+        el("title", said),
         el("style", Markup(asset("figure.css"))),
         el("rect", class_="card", width=_WIDTH - 1, height=total - 1, x=0.5, y=0.5, rx=10),
         el("text", heading, class_="heading", x=_LEFT, y=40),
@@ -70,6 +92,8 @@ def _frame(figure: Figure, top: int, height: int) -> Markup:
 
 
 def _facts(result: Mapping[str, Any]) -> str:
+    if result.get("kind") == "simulation":
+        return f"{words(result['status'])} \N{MIDDLE DOT} {result['message']}"
     mesh = published_mesh(result)
     parts = [words(result["status"]), f"objective {scientific(result['objective'], 8)}"]
     if mesh:

@@ -4,10 +4,11 @@ import re
 from importlib import resources
 
 import pytest
+from jsonschema_rs import Draft202012Validator
 
 import examples
 from api.errors import TYPES
-from schemas.methods import METHODS
+from schemas.methods import METHODS, SCHEDULES
 from schemas.reading import read_problem
 from store.ports import Store
 from tests.support.asgi import AppClient
@@ -15,10 +16,11 @@ from tests.support.asgi import AppClient
 
 def test_every_example_can_be_posted_as_it_is(client: AppClient) -> None:
     listed = client.get("/v1/examples").json()["examples"]
-    assert [one["name"] for one in listed] == examples.names()
+    assert [one["name"] for one in listed] == [*examples.names(), *examples.simulations()]
+    assert {one["kind"] for one in listed} == {"problem", "simulation"}
     for one in listed:
         assert one["title"]
-        reply = client.post("/v1/jobs", content=client.get(one["href"]).content,
+        reply = client.post(one["post"], content=client.get(one["href"]).content,
                             headers={"Content-Type": "application/json"})  # fmt: skip
         assert reply.status_code == 202
 
@@ -36,7 +38,7 @@ def test_only_examples_are_served(client: AppClient, name: str) -> None:
 
 def test_methods_come_with_their_schema(client: AppClient) -> None:
     methods = client.get("/v1/methods").json()["methods"]
-    assert len(methods) == len(METHODS)
+    assert len(methods) == len(METHODS) + len(SCHEDULES)
     for method in methods:
         assert method["title"]
         assert method["settings"]["properties"]["kind"]["const"] == method["kind"]
@@ -63,12 +65,21 @@ def test_the_schema_is_a_json_schema(client: AppClient) -> None:
 
 
 def test_the_schema_has_the_names_that_the_service_replaces(client: AppClient) -> None:
-    schema = client.get("/v1/schema").json()
-    system = schema["$defs"]["Phase"]["properties"]["system"]
-    assert system["discriminator"]["mapping"]["library"] == "#/$defs/LibrarySystem"
-    for guess in (schema["properties"]["guess"], schema["$defs"]["Phase"]["properties"]["guess"]):
-        assert {"$ref": "#/$defs/JobGuess"} in guess["anyOf"]
-    assert set(schema["$defs"]["JobGuess"]["properties"]) == {"from_job"}
+    fits = Draft202012Validator(client.get("/v1/schema").json()).is_valid
+    problem = examples.load("cart_pole")
+    problem["phases"][0]["system"] = {"kind": "library", "name": "cart_pole"}
+    problem["guess"] = problem["phases"][0]["guess"] = {"from_job": "0" * 32}
+    assert fits(problem)
+    problem["phases"][0]["system"]["parameter"] = {}
+    assert not fits(problem)
+
+
+def test_the_schema_of_simulations_is_one_of_its_own(client: AppClient) -> None:
+    fits = Draft202012Validator(client.get("/v1/schema/simulation").json()).is_valid
+    system = {"kind": "library", "name": "cart_pole"}
+    simulation = {"system": system, "duration": 1, "controls": {"from_job": "0" * 32}}
+    assert fits(simulation)
+    assert not fits({**simulation, "phases": []})
 
 
 def test_limits_are_the_enforced_ones(client: AppClient) -> None:

@@ -87,6 +87,13 @@ def test_a_control_that_bends_keeps_its_knot() -> None:
     np.testing.assert_allclose(mesh.knots[:4] * 6, [0, 2, 4, 5])
 
 
+@pytest.mark.parametrize(("share", "joined"), [(0.024, True), (0.026, False)])
+def test_what_the_integrals_need_is_not_joined(share: float, joined: bool) -> None:
+    """A segment twice as long has eight times the share, and twice of what it may have."""
+    phase = meshed([*[1e-12] * 6, 1.0], shares=np.array([share] * 6 + [0.0]))
+    assert (only(phase).segments < 6 + 5) == joined
+
+
 def test_a_phase_keeps_a_few_segments() -> None:
     small, large = meshed([1e-12] * 5), meshed([1.0])
     first, _ = next_meshes([small, large], SETTINGS) or []

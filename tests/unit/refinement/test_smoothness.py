@@ -10,6 +10,7 @@ from footfall.curves import Curves
 from schemas.results import CurveGroup, PhaseResult
 from solver.refinement.curves import bends, decay, seams
 from solver.refinement.hp import SMOOTH
+from solver.refinement.merge import SEAM
 
 Array = NDArray[np.float64]
 KNOTS = np.linspace(0.0, 2.0, 5)
@@ -75,6 +76,30 @@ def test_a_kink_bends_a_control_by_its_slope_times_the_shorter_segment() -> None
     apart = result(np.sin, kink, 3)
     np.testing.assert_allclose(bends(apart), [0, 0.5, 0], atol=1e-12)
     np.testing.assert_allclose(bends(apart), seams(apart), atol=1e-12)
+
+
+def test_what_the_solver_leaves_of_a_rest_does_not_bend() -> None:
+    """Pieces of degree 8 that are off by half a ten-thousandth, before a jump of one."""
+    rng = np.random.default_rng(0)
+
+    def rest(t: Array) -> Array:
+        return np.where(t < 1.5, 5e-5 * rng.choice([-1.0, 1.0], t.shape), 1.0)
+
+    noisy = result(np.sin, rest, 9)
+    assert np.all(seams(noisy)[:2] > 1), "continued, they are apart"
+    apart = bends(noisy)
+    assert np.all(apart[:2] < SEAM)
+    assert apart[2] > 1
+
+
+@pytest.mark.parametrize("points", [2, 3, 5, 9])
+def test_a_bend_counts_the_same_at_every_degree(points: int) -> None:
+    """A kink by its slope times the shorter piece; a curvature that jumps by a half, or more."""
+    kink = bends(result(np.sin, lambda t: np.maximum(t - 1.0, 0.0), points))
+    np.testing.assert_allclose(kink[1], 0.5, rtol=1e-6)
+    if points > 2:
+        curved = bends(result(np.sin, lambda t: np.maximum(t - 1.0, 0.0) ** 2, points))
+        assert 0.1 <= curved[1] <= 0.26, "continued by half a second it is 0.25"
 
 
 @pytest.mark.parametrize("group", ["controls", "rates"])

@@ -9,6 +9,7 @@ import pytest
 
 from schemas.reading import read_problem
 from solver.mesh import Mesh
+from solver.nlp import assembly
 from solver.nlp.assembly import Nlp, assemble
 from solver.nlp.program import Program
 from solver.nlp.scaling import typical_scaling
@@ -53,6 +54,12 @@ def test_derivatives(method: dict[str, Any], objective: str) -> None:
     assert_gradient(nlp, z)
     assert_jacobian(nlp, z)
     assert_hessian(nlp, z, lam)
+
+
+def test_derivatives_of_large_stages(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Above a size nobody looks for equal parts; the numbers are the same."""
+    monkeypatch.setattr(assembly, "_SHARED", 0)
+    test_derivatives({"kind": "hermite_simpson", "segments": 3}, OBJECTIVES[1])
 
 
 def close(ours: ca.DM, theirs: ca.DM) -> None:

@@ -12,7 +12,7 @@ import pytest
 import store.memory
 from schemas.errors import BadProblem, Conflict, QueueFull, UnknownJob
 from schemas.events import NlpIteration, StageStarted, StateChanged
-from schemas.jobs import JobError, JobStatus, JobTimings, Progress
+from schemas.jobs import JobError, JobKind, JobStatus, JobTimings, Progress
 from store import connect
 from store.ports import KEY_IN_FLIGHT, KEY_REUSED, JobRecord, LoggedEvent, Store
 from store.settings import StoreSettings
@@ -283,6 +283,15 @@ def test_listing_filters(ports: Store) -> None:
     assert [r.id for r in ports.jobs.list("ann", status=JobStatus.RUNNING).records] == ["a1"]
     assert [r.id for r in ports.jobs.list("ann", name="two").records] == ["a2"]
     assert ports.jobs.list("nobody").records == []
+
+
+def test_listing_has_solves_and_simulations_but_no_chunks(ports: Store) -> None:
+    for number, kind in enumerate(JobKind):
+        add(ports, f"j{number}", kind=kind, created=float(number))
+    listed = {record.kind for record in ports.jobs.list("ann").records}
+    assert listed == {JobKind.SOLVE, JobKind.SIMULATION}
+    for kind in listed:
+        assert [r.kind for r in ports.jobs.list("ann", kind=kind).records] == [kind]
 
 
 @pytest.mark.parametrize("cursor", ["x", "!!!", "é", "bmFuIGE", "MSAyIDM"])

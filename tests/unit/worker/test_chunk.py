@@ -1,6 +1,7 @@
 """The points of one job: what is kept when attempts are lost, and from where each point starts."""
 
 import time
+from dataclasses import replace
 from typing import Any
 
 import orjson
@@ -14,7 +15,7 @@ from schemas.problem import Problem
 from schemas.results import Solution, SolutionStatus
 from schemas.sweeps import ChunkPlan, PointOutcome, PointStatus, SweepPlan
 from store.ports import JobRecord, Store, SweepRecord
-from tests.support.engines import page
+from tests.support.engines import ENGINES
 from tests.support.solutions import block_move
 from worker.recovery import Loss, settle
 from worker.run import Runner
@@ -75,7 +76,7 @@ class Engine:
 
 
 def run(ports: Store, engine: Any, job_id: str = "a1") -> None:
-    Runner(ports, ports, engine, page, "w1").run(job_id)
+    Runner(ports, ports, replace(ENGINES, solve=engine), "w1").run(job_id)
 
 
 def guesses(engine: Engine) -> list[str]:

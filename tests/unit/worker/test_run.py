@@ -23,7 +23,7 @@ from schemas.results import SolutionStatus
 from store.backend.queue import TASK
 from store.embedded import url
 from store.ports import JobRecord, Store
-from tests.support.engines import page, scripted, solution
+from tests.support.engines import ENGINES, scripted, solution
 from tests.support.service import ROOT, submit, wait_until
 from worker import logs, outcomes, run
 from worker.reporting import Reporter
@@ -37,7 +37,7 @@ def ports() -> Store:
 
 
 def runner(ports: Store, engine: Any = scripted) -> Runner:
-    return Runner(ports, ports, engine, page, "w1")
+    return Runner(ports, ports, replace(ENGINES, solve=engine), "w1")
 
 
 def claimed(ports: Store) -> JobRecord:

@@ -1,0 +1,130 @@
+"""Where a mechanism touches: friction, restitution, circles, and grounds that do not step."""
+
+import math
+from collections.abc import Iterator
+
+from schemas.checks.masses import Numbers
+from schemas.errors import Issue
+from schemas.expressions import Call, Expression, ExpressionError, Tree, constant, names_in, walk
+from schemas.mechanisms import Mechanism, Pair, Shape, Surface
+from schemas.mechanisms.contacts import HEIGHT_NAME
+from schemas.problem import Problem
+
+_REACH, _STEP = 20.0, 0.1
+_STEEP, _JUMP = 4.0, 1e-3
+_HALVINGS = 40
+_MEND = (
+    "write it as a steep ramp, such as 0.1*(1 + tanh(x/0.01))/2, or as a second surface that some "
+    "contacts may touch ('pairs')"
+)
+
+
+def check(problem: Problem) -> Iterator[Issue]:
+    """Numbers of contacts, surfaces, shapes and pairs; heights that jump."""
+    for index, phase in enumerate(problem.phases):
+        if not isinstance(phase.system, Mechanism):
+            continue
+        numbers, system = Numbers.of(phase, index), phase.system
+        for name, contact in system.contacts.items():
+            radius = numbers.value(contact.radius)
+            if radius is not None and radius < 0:
+                where = numbers.at("contacts", name, "radius")
+                yield Issue(where, "a radius below 0", "0 is a point")
+        for name, surface in system.surfaces.items():
+            yield from _rubbing("surfaces", name, surface, numbers)
+            yield from _height(name, surface, numbers)
+        for name, pair in (system.pairs or {}).items():
+            yield from _rubbing("pairs", name, pair, numbers)
+            yield from _own(name, pair, system, numbers)
+        for name, shape in system.shapes.items():
+            yield from _shape(name, shape, numbers)
+
+
+def _rubbing(field: str, name: str, part: Surface | Pair, numbers: Numbers) -> Iterator[Issue]:
+    friction, restitution = numbers.value(part.friction), numbers.value(part.restitution)
+    if friction is not None and friction < 0:
+        where = numbers.at(field, name, "friction")
+        yield Issue(where, "a coefficient of friction below 0", "0 is without friction")
+    if restitution is not None and not 0 <= restitution <= 1:
+        yield Issue(
+            numbers.at(field, name, "restitution"),
+            f"a coefficient of restitution of {restitution:g}",
+            "it is from 0, where nothing bounces, to 1, where no energy is lost",
+        )
+
+
+def _own(name: str, pair: Pair, system: Mechanism, numbers: Numbers) -> Iterator[Issue]:
+    """A contact does not touch a shape of its own body."""
+    contact, shape = system.contacts.get(pair.contact), system.shapes.get(pair.against)
+    if contact is not None and shape is not None and contact.body == shape.body:
+        yield Issue(
+            numbers.at("pairs", name),
+            f"'{pair.contact}' and '{pair.against}' are of the same body",
+            "a pair is of two bodies that move against each other",
+        )
+
+
+def _shape(name: str, shape: Shape, numbers: Numbers) -> Iterator[Issue]:
+    sizes = [("circle", shape.circle)] if shape.circle is not None else []
+    for field, expression in sizes:
+        value = numbers.value(expression)
+        if value is not None and value <= 0:
+            where = numbers.at("shapes", name, field)
+            yield Issue(where, "a radius must be above 0", "touch a point by a 'contact' of it")
+    for side, half in enumerate(shape.ellipse or []):
+        value = numbers.value(half)
+        if value is not None and value <= 0:
+            yield Issue(numbers.at("shapes", name, "ellipse", side), "a half axis must be above 0")
+
+
+def _height(name: str, surface: Surface, numbers: Numbers) -> Iterator[Issue]:
+    where = numbers.at("surfaces", name, "height")
+    call = _stepping(surface.height.tree)
+    if call is not None:
+        message = f"with {call.function} the ground has a vertical step"
+        yield Issue(where, message, _MEND, call.column)
+        return
+    place = _jump(surface.height, numbers)
+    if place is not None:
+        yield Issue(where, f"the ground has a vertical step at x = {place:.4g}", _MEND)
+
+
+def _stepping(height: Tree) -> Call | None:
+    """A function that jumps, of the place."""
+    signs = [one for one in walk(height) if isinstance(one, Call) and one.function == "sign"]
+    of_place = (one for one in signs if any(n.name == HEIGHT_NAME for n in names_in(one)))
+    return next(of_place, None)
+
+
+def _jump(height: Expression, numbers: Numbers) -> float | None:
+    """Where the height jumps, near the origin; searched where it is steep, down to rounding."""
+    if not any(name.name == HEIGHT_NAME for name in names_in(height.tree)):
+        return None
+    count = round(2 * _REACH / _STEP) + 1
+    grid = [-_REACH + _STEP * (i + 0.123) for i in range(count)]
+    heights = [_at(height, x, numbers) for x in grid]
+    for i in range(count - 1):
+        if abs(heights[i + 1] - heights[i]) > _STEEP * _STEP:
+            found = _narrowed(height, grid[i], grid[i + 1], numbers)
+            if found is not None:
+                return found
+    return None
+
+
+def _narrowed(height: Expression, left: float, right: float, numbers: Numbers) -> float | None:
+    a, b = _at(height, left, numbers), _at(height, right, numbers)
+    for _ in range(_HALVINGS):
+        middle = (left + right) / 2
+        value = _at(height, middle, numbers)
+        if abs(value - a) > abs(b - value):
+            right, b = middle, value
+        else:
+            left, a = middle, value
+    return (left + right) / 2 if abs(b - a) > _JUMP else None
+
+
+def _at(height: Expression, x: float, numbers: Numbers) -> float:
+    try:
+        return constant(height.tree, {**numbers.known, HEIGHT_NAME: x})
+    except ExpressionError:
+        return math.nan
