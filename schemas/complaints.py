@@ -84,8 +84,9 @@ def issue_of(error: ErrorDetails, document: type[Posted] = Problem) -> Issue:
 
 def _other(error: ErrorDetails, parts: list[Part], _: Schema) -> Issue:
     context = error.get("ctx", {})
-    if "at" in context:  # a side of a pair
-        parts = [*parts, context["at"]]
+    if "at" in context:  # a side of a pair, or the way to a part
+        inner = context["at"]
+        parts = [*parts, *(inner if isinstance(inner, tuple) else (inner,))]
     message = _PLAIN.get(error["type"]) or _plain(error["msg"])
     return Issue(pointer(*parts), message, context.get("hint", ""), context.get("column"))
 
@@ -212,7 +213,10 @@ def _is_vector(schema: Schema) -> bool:
 
 def _too_short(error: ErrorDetails, parts: list[Part], schema: Schema) -> Issue:
     if not _is_vector(schema):
-        return _other(error, parts, schema)
+        least, count = error["ctx"]["min_length"], error["ctx"]["actual_length"]
+        entries = "one entry" if least == 1 else f"{least} entries"
+        got = "none" if count == 0 else str(count)
+        return Issue(pointer(*parts), f"expected {entries} or more, got {got}")
     given = error["ctx"]["actual_length"]
     return Issue(pointer(*parts), f"expected x and y, got a list of {given}", _PLANE)
 

@@ -34,7 +34,6 @@ Check = Callable[[Problem], Iterator[Issue]]
 CHECKS: tuple[Check, ...] = (
     names.check,
     parts.check,
-    trees.check,
     masses.check,
     drives.check,
     contacts.check,
@@ -55,11 +54,24 @@ CHECKS: tuple[Check, ...] = (
 def check(problem: Problem) -> Iterator[Issue]:
     """Every issue of every check, found while they are asked for.
 
-    A problem over a size limit is not looked into any further.
+    A problem over a size limit, or with a mechanism that does not hang together, is not looked
+    into any further.
     """
     over = list(sizes.check(problem))
     if over:
         yield from over
         return
+    broken = list(torn(problem))
+    if broken:
+        yield from broken
+        return
     for one in CHECKS:
         yield from one(problem)
+
+
+def torn(problem: Problem) -> list[Issue]:
+    """Why bodies of a mechanism do not hang together.
+
+    Its states follow from that, so all else that could be said about names would mislead.
+    """
+    return list(parts.unjoined(problem)) or list(trees.check(problem))

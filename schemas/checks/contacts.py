@@ -1,18 +1,24 @@
 """Where a mechanism touches: friction, restitution, circles, and grounds that do not step."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from schemas.checks.masses import Numbers
 from schemas.errors import Issue
 from schemas.expressions import Call, Expression, ExpressionError, Tree, constant, names_in, walk
 from schemas.mechanisms import Mechanism, Pair, Shape, Surface
 from schemas.mechanisms.contacts import HEIGHT_NAME
+from schemas.pointers import Part, pointer
 from schemas.problem import Problem
 
 _REACH, _STEP = 20.0, 0.1
 _STEEP, _JUMP = 4.0, 1e-3
 _HALVINGS = 40
+_KINKS = ("abs", "max", "min")
+_SMOOTH = (
+    "write it smooth: sqrt(x^2 + 1e-4) for abs(x), (x + sqrt(x^2 + 1e-4))/2 for max(x, 0); the "
+    "method 'time_stepping' of simulations takes kinks"
+)
 _MEND = (
     "write it as a steep ramp, such as 0.1*(1 + tanh(x/0.01))/2, or as a second surface that some "
     "contacts may touch ('pairs')"
@@ -33,6 +39,8 @@ def check(problem: Problem) -> Iterator[Issue]:
         for name, surface in system.surfaces.items():
             yield from _rubbing("surfaces", name, surface, numbers)
             yield from _height(name, surface, numbers)
+        for name in _held(system):
+            yield from kinked(name, system.surfaces[name], (*numbers.root,))
         for name, pair in (system.pairs or {}).items():
             yield from _rubbing("pairs", name, pair, numbers)
             yield from _own(name, pair, system, numbers)
@@ -89,10 +97,34 @@ def _height(name: str, surface: Surface, numbers: Numbers) -> Iterator[Issue]:
         yield Issue(where, f"the ground has a vertical step at x = {place:.4g}", _MEND)
 
 
+def kinked(name: str, surface: Surface, root: tuple[Part, ...]) -> Iterator[Issue]:
+    """An issue where the slope of a surface may jump, of which ``root`` is the mechanism's place.
+
+    Contacts that are held by their accelerations follow slopes: a jump of one loses them.
+    """
+    call = _of_place(surface.height.tree, _KINKS)
+    if call is not None:
+        message = f"with {call.function} the ground has a kink, where a contact that touches is lost"
+        where = pointer(*root, "surfaces", name, "height")
+        yield Issue(where, message, _SMOOTH, call.column)
+
+
+def _held(system: Mechanism) -> list[str]:
+    """The surfaces that contacts of the mode touch."""
+    touching = system.touching
+    found = {touching[pair].against for pair in system.mode if pair in touching}
+    return [name for name in system.surfaces if name in found]
+
+
 def _stepping(height: Tree) -> Call | None:
     """A function that jumps, of the place."""
-    signs = [one for one in walk(height) if isinstance(one, Call) and one.function == "sign"]
-    of_place = (one for one in signs if any(n.name == HEIGHT_NAME for n in names_in(one)))
+    return _of_place(height, ("sign",))
+
+
+def _of_place(height: Tree, functions: Sequence[str]) -> Call | None:
+    """The first of some functions that the place enters."""
+    calls = [one for one in walk(height) if isinstance(one, Call) and one.function in functions]
+    of_place = (one for one in calls if any(n.name == HEIGHT_NAME for n in names_in(one)))
     return next(of_place, None)
 
 

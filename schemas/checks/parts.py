@@ -30,13 +30,28 @@ def check(problem: Problem) -> Iterator[Issue]:
     for index, phase in enumerate(problem.phases):
         if isinstance(phase.system, Mechanism):
             root = ("phases", index, "system")
-            yield from _unknown(phase.system, root)
+            yield from _missing(_uses(phase.system), root)
             yield from _shared(phase.system, root, phases)
             yield from _alone(phase.system, root)
 
 
-def _unknown(system: Mechanism, root: tuple[Part, ...]) -> Iterator[Issue]:
-    for parts, name, what, known in _uses(system):
+def unjoined(problem: Problem) -> Iterator[Issue]:
+    """Joints of bodies that are not there, and bodies that are called the ground."""
+    for index, phase in enumerate(problem.phases):
+        if isinstance(phase.system, Mechanism):
+            root = ("phases", index, "system")
+            if GROUND in phase.system.bodies:
+                yield _reserved(GROUND, "a body", pointer(*root, "bodies", GROUND))
+            yield from _missing(_joined(phase.system), root)
+
+
+def _reserved(name: str, kind: str, where: str) -> Issue:
+    message = f"'{name}' is reserved and cannot name {kind}"
+    return Issue(where, message, f"take another name, such as '{name}_1'")
+
+
+def _missing(uses: Iterator[Use], root: tuple[Part, ...]) -> Iterator[Issue]:
+    for parts, name, what, known in uses:
         if name not in known:
             some = ", ".join(list(known)[:12])
             hint = did_you_mean(name, known)
@@ -65,14 +80,19 @@ def _uses(system: Mechanism) -> Iterator[Use]:
         yield ("loose", index), name, "force that holds something", held
 
 
-def _bodies(system: Mechanism) -> Iterator[Use]:
-    """Every place that names a body."""
+def _joined(system: Mechanism) -> Iterator[Use]:
+    """The bodies of each joint."""
     bodies, places = list(system.bodies), [*system.bodies, GROUND]
     for name, joint in system.joints.items():
         if not isinstance(joint, Floating):
             yield ("joints", name, "parent"), joint.parent, "body", places
         if joint.child != GROUND:
             yield ("joints", name, "child"), joint.child, "body", bodies
+
+
+def _bodies(system: Mechanism) -> Iterator[Use]:
+    """Every place that names a body, but those of joints: `unjoined` has looked at them."""
+    bodies, places = list(system.bodies), [*system.bodies, GROUND]
     for parts, place in _places(system):
         yield (*parts, "body"), place.body, "body", places
     for field in ("forces", "torques"):
@@ -110,8 +130,7 @@ def _shared(system: Mechanism, root: tuple[Part, ...], phases: set[str]) -> Iter
         for name in getattr(system, field):
             where = pointer(*root, field, name)
             if name in TAKEN or name == GROUND:
-                message = f"'{name}' is reserved and cannot name {kind}"
-                yield Issue(where, message, f"take another name, such as '{name}_1'")
+                yield _reserved(name, kind, where)
             elif name in phases:
                 message = f"'{name}' is already the name of a phase"
                 yield Issue(where, message, f"'{name}.x' would mean two things: rename one")

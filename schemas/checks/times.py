@@ -3,8 +3,10 @@
 import math
 from collections.abc import Iterator
 
+from schemas.checks import sequences
 from schemas.checks.constants import Constants, Interval
 from schemas.errors import Issue
+from schemas.methods import Hybrid
 from schemas.phases import Phase
 from schemas.pointers import Part, pointer
 from schemas.problem import Problem
@@ -35,12 +37,37 @@ def check(problem: Problem) -> Iterator[Issue]:
         duration = _given(phase, "duration", constants, place)
         final = _given(phase, "final", constants, place)
         yield from constants.drain()
+        modes = _Modes(problem, index, constants)
+        yield from modes.issues
         if start is None or duration is None or final is None:
             start = None
             continue
         end = max(start[0] + max(duration[0], 0), final[0]), min(start[1] + duration[1], final[1])
-        yield from _cannot_last(start, duration, final, end, place)
+        broken = list(_cannot_last(start, duration, final, end, place))
+        yield from broken or modes.misfits(start, duration, final)
         start = end if start[0] < end[1] and end[0] <= end[1] else None
+
+
+class _Modes:
+    """The modes of a phase that has a sequence."""
+
+    def __init__(self, problem: Problem, index: int, constants: Constants) -> None:
+        phase = problem.phases[index]
+        method = phase.method or problem.method
+        self._place = ("phases", index, "method") if phase.method else ("method",)
+        self.issues: list[Issue] = []
+        self._lasting: list[Interval] = []
+        if isinstance(method, Hybrid):
+            self.issues, self._lasting = sequences.each(method, constants, self._place)
+
+    def misfits(self, start: Interval, duration: Interval, final: Interval) -> Iterator[Issue]:
+        """Whether they fill the time from the start to the end."""
+        if self._lasting and not self.issues:
+            allowed = (
+                max(duration[0], final[0] - start[1], 0.0),
+                min(duration[1], final[1] - start[0]),
+            )
+            yield from sequences.together(self._lasting, allowed, self._place)
 
 
 def _given(

@@ -16,6 +16,8 @@ Vector = Annotated[
     Field(min_length=2, max_length=2, description="x and y, constant: parameters, statics."),
 ]
 
+Corner = Annotated[list[float], Field(min_length=2, max_length=2, description="x and y, m.")]
+
 GROUND = "ground"
 """The parent of what is fixed to the world."""
 
@@ -42,7 +44,7 @@ class Body(Posted):
     mass: Expression | None = Field(default=None, description="kg, positive.")
     inertia: Expression | None = Field(default=None, description="kg m^2, about the com.")
     com: Vector = Field(default_factory=origin, description="Centre of mass, in m.")
-    outline: list[list[float]] = Field(default_factory=list, max_length=200)
+    outline: list[Corner] = Field(default_factory=list, max_length=200)
 
 
 class _Joint(Posted):

@@ -4,14 +4,18 @@ Its system and all its expressions are looked at as those of a problem of one ph
 `schemas.checks` say what they say there, at the places of the simulation.
 """
 
+import math
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
 
-from schemas import checks
+from schemas import checks, resolve
+from schemas.checks.contacts import kinked
 from schemas.errors import Issue
-from schemas.expressions import Expression, names_in, split
+from schemas.expressions import Expression, ExpressionError, names_in, split
 from schemas.expressions.errors import quoted
+from schemas.habits import as_rate
 from schemas.limits import MODEL_LIMITS
+from schemas.mechanisms import Mechanism
 from schemas.phases import Constraint, Phase, Time
 from schemas.pointers import Part, parts_of, pointer
 from schemas.problem import Problem, Static
@@ -36,7 +40,8 @@ Place = tuple[Part, ...]
 
 def check(simulation: Simulation) -> Iterator[Issue]:
     """Every issue, those of this document's own kind first."""
-    found = [*_method(simulation), *_names(simulation), *_signals(simulation)]
+    found = _torn(simulation)
+    found = found or [*_method(simulation), *_names(simulation), *_signals(simulation)]
     expressions = list(_expressions(simulation))
     starts = range(0, max(len(expressions), 1), MODEL_LIMITS.constraints)
     for start in starts:
@@ -45,7 +50,15 @@ def check(simulation: Simulation) -> Iterator[Issue]:
         some = range(start, min(start + MODEL_LIMITS.constraints, len(expressions)))
         problem = _as_problem(simulation, expressions, some)
         found = [_moved(one, expressions, start) for one in checks.check(problem)]
-    yield from found
+    yield from found or _numbers(simulation)
+
+
+def _torn(simulation: Simulation) -> list[Issue]:
+    """Why the bodies of its mechanism do not hang together: then nothing else is said."""
+    if not isinstance(simulation.system, Mechanism):
+        return []
+    bare = Phase(system=simulation.system, time=Time(duration=_fixed(Scalar.read(1))))
+    return [_moved(one, [], 0) for one in checks.torn(Problem(phases=[bare]))]
 
 
 def _as_problem(
@@ -160,6 +173,48 @@ def _method(simulation: Simulation) -> Iterator[Issue]:
         )
 
 
+def _grounds(simulation: Simulation) -> Iterator[Issue]:
+    """What holds contacts by their accelerations would lose them at a kink of the ground."""
+    system = simulation.system
+    if isinstance(system, Mechanism) and isinstance(simulation.method, Events):
+        touched = {pair.against for pair in system.touching.values()}
+        for name in system.surfaces.keys() & touched:
+            yield from kinked(name, system.surfaces[name], ("system",))
+
+
+def _numbers(simulation: Simulation) -> Iterator[Issue]:
+    """Constants of the method that have no meaning, and more steps than there may be."""
+    method = simulation.method
+    if isinstance(method, Smooth):
+        return
+    bounce = _value(simulation, method.restitution)
+    if bounce is not None and not 0 <= bounce <= 1:
+        yield Issue(
+            pointer("method", "restitution"),
+            f"a coefficient of restitution of {bounce:g}",
+            "it is from 0, where nothing bounces, to 1, where no energy is lost",
+        )
+    duration = _value(simulation, simulation.duration)
+    if isinstance(method, TimeStepping) and duration is not None:
+        steps, most = math.ceil(duration / method.step), MODEL_LIMITS.simulation_steps
+        if steps > most:
+            yield Issue(
+                pointer("method", "step"),
+                f"{duration:g} s make {steps} steps of {method.step:g} s; at most {most} are taken",
+                f"take steps of {duration / most:.3g} s or more, or a shorter duration",
+            )
+
+
+def _value(simulation: Simulation, given: Scalar | None) -> float | None:
+    """The number, where it has one already."""
+    try:
+        fixed = {name: resolve.scalar(one, {}) for name, one in simulation.static.items()}
+        known = {**fixed, **resolve.parameters(simulation.system)}
+        return None if given is None else resolve.scalar(given, known)
+    except ExpressionError:
+        return None
+
+
 def _names(simulation: Simulation) -> Iterator[Issue]:
     """States, where states are named."""
     states = simulation.system.state_names
@@ -234,7 +289,8 @@ def _known(
 ) -> Iterator[Issue]:
     for name in given:
         if name not in names:
-            hint = did_you_mean(name, names) or f"the {kind}s are " + ", ".join(names[:12])
+            hint = as_rate(name, names) or did_you_mean(name, names)
+            hint = hint or f"the {kind}s are " + ", ".join(names[:12])
             hint = hint if names else f"the system has no {kind}s"
             yield Issue(pointer(*root, name), f"{quoted(name)} is not a {kind}", hint)
 

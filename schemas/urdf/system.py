@@ -193,15 +193,12 @@ class Urdf(Posted):
         """What the fields name is there, once; nothing takes a name that has a meaning."""
         self._names_free()
         drivable = [joint.name for joint in self.tree.moving if _drivable(joint)]
-        for name in self.motors or []:
-            _among(f"the motor '{name}'", name, drivable, "a hinge or slider that mimics nobody")
+        for index, name in enumerate(self.motors or []):
+            kind = "a hinge or slider that mimics nobody"
+            _among(f"the motor '{name}'", name, drivable, kind, ("motors", index))
         if len(set(self.motor_joints)) < len(self.motor_joints):
             _refuse("a joint named twice in 'motors'", "name each once")
-        for what in (self.contacts, self.forces):
-            for name, one in what.items():
-                _among(f"the link of '{name}'", one.link, list(self.tree.links), "a link")
-        for name in self.mode:
-            _among(f"'{name}' in 'mode'", name, list(self.contacts), "a contact")
+        self._parts_known()
         self._held_once()
         if not self.coordinates:
             mend = "make a joint revolute, or the base floating"
@@ -212,6 +209,18 @@ class Urdf(Posted):
                 f"over the limit: {count} states, at most {most}", "fix joints that matter less"
             )
         return self
+
+    def _parts_known(self) -> None:
+        links = list(self.tree.links)
+        for field, what in (("contacts", self.contacts), ("forces", self.forces)):
+            for name, one in what.items():
+                told = f"the link '{one.link}' of '{name}'"
+                _among(told, one.link, links, "a link", (field, name, "link"))
+        for name in self.mode:
+            told = f"'{name}' in 'mode'"
+            if name not in self.contacts:
+                hint = did_you_mean(name, self.contacts)
+                _refuse(f"{told} is not a contact of the system", hint, ("mode", name))
 
     def _names_free(self) -> None:
         links = self.tree.links
@@ -267,10 +276,12 @@ def _intervals(joint: Joint) -> dict[Series, tuple[float, float]]:
     return found
 
 
-def _among(what: str, name: str, options: list[str], kind: str) -> None:
+def _among(what: str, name: str, options: list[str], kind: str, at: tuple[Part, ...]) -> None:
     if name not in options:
-        _refuse(f"{what} is not {kind} of the text", did_you_mean(name, options))
+        _refuse(f"{what} is not {kind} of the text", did_you_mean(name, options), at)
 
 
-def _refuse(message: str, hint: str) -> None:
-    raise PydanticCustomError("urdf", "{message}", {"message": message, "hint": hint})
+def _refuse(message: str, hint: str, at: tuple[Part, ...] = ()) -> None:
+    """Raise it for the part that stands ``at`` a place of the system."""
+    context = {"message": message, "hint": hint, "at": at}
+    raise PydanticCustomError("urdf", "{message}", context)

@@ -80,8 +80,10 @@ def message(
         text += f" Failed: {names}."
     if choose(problem, solved) is not solved[-1]:
         before, after = (sum(map(len, mesh.errors)) for mesh in solved[-2:])
-        ended = solved[-1].outcome.status.replace("_", " ")
-        text += f" This is the optimum on {before} segments; on {after} it ended: {ended}."
+        ended = f"it ended: {solved[-1].outcome.status.replace('_', ' ')}"
+        if solved[-1].optimal:
+            ended = "it is less accurate"
+        text += f" This is the optimum on {before} segments; on {after} {ended}."
     return text
 
 

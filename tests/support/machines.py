@@ -1,8 +1,12 @@
 """Mechanisms for tests: small, and between them with everything that moves in a plane."""
 
+from collections.abc import Callable
 from typing import Any
 
 from schemas.mechanisms import Mechanism
+
+Build = Callable[..., Mechanism]
+"""Makes a mechanism; what it is given replaces fields."""
 
 
 def machine(document: dict[str, Any]) -> Mechanism:

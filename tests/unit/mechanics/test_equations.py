@@ -7,7 +7,7 @@ from schemas.expressions import derivative
 from schemas.mechanisms import Mechanism
 from solver.simulation.multibody import Multibody
 from tests.support.lowered import Lowered
-from tests.support.machines import cart_pole, chain, crane, double_pendulum, machine, rolling
+from tests.support.machines import Build, cart_pole, chain, crane, double_pendulum, machine, rolling
 
 SAME = 1e-11
 
@@ -84,7 +84,7 @@ def rows(low: Lowered, at: dict[str, np.ndarray]) -> np.ndarray:
 
 @pytest.mark.parametrize("angles", ["relative", "absolute"])
 @pytest.mark.parametrize("build", BUILDERS)
-def test_the_residuals_are_those_of_the_judge(build, angles: str) -> None:
+def test_the_residuals_are_those_of_the_judge(build: Build, angles: str) -> None:
     low = Lowered(build(angles=angles))
     at = low.random()
     np.testing.assert_allclose(rows(low, at), applied(low, at), rtol=SAME, atol=SAME)

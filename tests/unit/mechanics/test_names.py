@@ -7,7 +7,7 @@ from schemas.expressions import derivative, stem
 from schemas.expressions.names import MAX_ORDER
 from solver.simulation.multibody import Multibody
 from tests.support.lowered import Lowered
-from tests.support.machines import chain, crane, machine
+from tests.support.machines import Build, chain, crane, machine
 
 STEP = 1e-5
 
@@ -24,7 +24,7 @@ def moved(low: Lowered, at: dict[str, np.ndarray], by: float) -> dict[str, np.nd
 
 @pytest.mark.parametrize("angles", ["relative", "absolute"])
 @pytest.mark.parametrize("build", [chain, crane])
-def test_every_name_has_its_value_and_its_rate(build, angles: str) -> None:
+def test_every_name_has_its_value_and_its_rate(build: Build, angles: str) -> None:
     low = Lowered(build(angles=angles))
     at = low.random()
     at |= {derivative(name): np.zeros(6) for name in low.mechanism.control_names}

@@ -9,7 +9,7 @@ from schemas.errors import BadProblem, Issue
 from schemas.mechanisms import Mechanism
 from schemas.reading import canonical, read_problem
 from schemas.remarks import remarks
-from tests.support.machines import cart_pole, chain, crane, double_pendulum, rolling
+from tests.support.machines import Build, cart_pole, chain, crane, double_pendulum, rolling
 
 LIMB = {"mass": 1, "inertia": 0.1, "com": [0, -0.2]}
 
@@ -79,7 +79,7 @@ def test_a_mechanism_is_read_and_written() -> None:
 
 
 @pytest.mark.parametrize("build", [chain, cart_pole, crane, double_pendulum, rolling])
-def test_the_machines_of_the_tests_are_good(build) -> None:
+def test_the_machines_of_the_tests_are_good(build: Build) -> None:
     system = build().model_dump(mode="json")
     read_problem({"phases": [{"system": system, "time": {"final": 1}}]})
 
