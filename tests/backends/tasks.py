@@ -2,16 +2,21 @@
 
 import time
 from collections.abc import Callable
+from functools import partial
 from typing import Any, NamedTuple
 
 import examples
 from schemas.problem import Problem, SolverSettings
 from schemas.reading import read_problem
 from solver.backends import Outcome, Watch, make_backend
+from solver.hybrid import expand, mode_guesses
+from solver.lowering import smoothed
+from solver.mechanics import limited
 from solver.nlp.program import Program
 from solver.nlp.redundancy import find_redundancy
 from solver.nlp.scaling import Scaling, typical_scaling
 from solver.nlp.task import NlpTask
+from solver.poses import loosened
 from solver.prepare import prepare
 from solver.transcribe import transcribe
 from tests.unit.solver.problems import block
@@ -33,8 +38,11 @@ class Posed(NamedTuple):
 
 def posed(document: dict[str, Any]) -> Posed:
     """The first mesh of a problem."""
-    problem = read_problem(document)
-    program = transcribe(*prepare(problem)).program
+    posted = read_problem(document)
+    expansion = expand(posted)
+    problem = loosened(limited(smoothed(expansion.problem)))
+    guess = partial(mode_guesses, expansion, posted)
+    program = transcribe(*prepare(problem, guess)).program
     scaling = typical_scaling(program)
     task = NlpTask.of(program, scaling)
     task = task.without(find_redundancy(program, scaling, task.nlp))
