@@ -16,6 +16,7 @@ from schemas.inlining import inlined, inlined_simulation
 from schemas.jobs import JobKind, JobStatus
 from schemas.problem import Limits, Problem
 from schemas.reading import canonical, read_problem, spec_sha256
+from schemas.remarks import simulated_remarks
 from schemas.simulations import Simulation, read_simulation
 from store.ports import JobRecord, Store
 
@@ -67,7 +68,7 @@ def read_posted_simulation(ctx: Context, body: bytes, owner: str) -> Draft:
     simulation = read_simulation(body, lambda document: inlined_simulation(document, found))
     limits = _capped(ctx, simulation.limits)
     capped = simulation.model_copy(update={"limits": limits})
-    notes = [*lowered(simulation.limits, limits)]
+    notes = [*lowered(simulation.limits, limits), *simulated_remarks(simulation)]
     return Draft(JobKind.SIMULATION, capped, _fingerprint(b"simulation\n" + body), notes)
 
 

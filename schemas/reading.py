@@ -22,6 +22,12 @@ _ORDERED = frozenset({"parameters", "define"})
 """Objects whose order has a meaning: an entry may use those before it."""
 
 
+_OF_PROBLEMS = ("phases", "objective", "time")
+"""Fields of problems: who gives one beside a system has left out the phase around it."""
+
+_ROUTE = {"problem": "/v1/jobs", "simulation": "/v1/simulations"}
+_COMMAND = {"problem": "solve", "simulation": "simulate"}
+
 Document = dict[str, Any]
 
 
@@ -44,6 +50,7 @@ def read_problem(
         Nothing else is raised, whatever the data; at most `MAX_ISSUES` issues are kept.
     """
     document = read_document(data)
+    _refuse(misdirected(document, "problem"))
     if inline is not None:
         document = read_inlined(document, inline)
     problem = _checked(document)
@@ -52,7 +59,7 @@ def read_problem(
     return problem
 
 
-def read_document(data: bytes | str | Document) -> Document:
+def read_document(data: bytes | str | Document, kind: str = "problem") -> Document:
     """The JSON object, without NaN, repeated keys or too much of anything. Raises BadProblem."""
     document: Any = data
     if isinstance(data, bytes | str):
@@ -61,8 +68,20 @@ def read_document(data: bytes | str | Document) -> Document:
             raise BadProblem([unreadable])
     _refuse(faults(document))
     if not isinstance(document, dict):
-        raise BadProblem([Issue("", "a problem is a JSON object, {...}")])
+        raise BadProblem([Issue("", f"a {kind} is a JSON object, {{...}}")])
     return document
+
+
+def misdirected(document: Document, kind: str) -> Iterator[Issue]:
+    """A document of another kind than this one: a problem has phases, a simulation a system."""
+    given = kind
+    if "phases" in document and "system" not in document:
+        given = "problem"
+    elif "system" in document and document.keys().isdisjoint(_OF_PROBLEMS):
+        given = "simulation"
+    if given != kind:
+        hint = f"send it to POST {_ROUTE[given]}; at a command line: footfall {_COMMAND[given]}"
+        yield Issue("", f"this is a {given}, not a {kind}", hint)
 
 
 def read_inlined(document: Document, inline: Callable[[Document], Document]) -> Document:

@@ -10,7 +10,10 @@ from schemas.guesses import RandomGuess
 from schemas.mechanisms import Mechanism
 from schemas.mechanisms.four_bars import change_points
 from schemas.problem import Problem
+from schemas.simulations.document import Simulation, TimeStepping
+from schemas.suspicions import suspicions
 from schemas.urdf import Urdf
+from schemas.values import Bound
 
 
 def remarks(problem: Problem) -> Iterator[str]:
@@ -23,10 +26,30 @@ def remarks(problem: Problem) -> Iterator[str]:
     yield from untied(problem)
     yield from folding(problem)
     yield from corners(problem)
+    yield from doubtful(problem)
     for index, phase in enumerate(problem.phases):
         if isinstance(phase.system, Urdf):
             for remark in phase.system.tree.remarks:
                 yield f"/phases/{index}/system/text: {remark}"
+
+
+def simulated_remarks(simulation: Simulation) -> Iterator[str]:
+    """The same of a simulation."""
+    initial = {name: Bound(value, value) for name, value in simulation.initial.items()}
+    yield from suspicions(simulation.system, {"initial": initial}, ())
+    method, span = simulation.method, simulation.duration.source
+    if isinstance(method, TimeStepping) and isinstance(span, float) and method.step > span:
+        yield (
+            f"/method/step: one step of {method.step:g} s is longer than the duration, {span:g} s: "
+            "take a shorter one"
+        )
+
+
+def doubtful(problem: Problem) -> Iterator[str]:
+    """Angles that look like degrees, and motors that share a joint."""
+    for index, phase in enumerate(problem.phases):
+        ends = {"bounds": phase.bounds, "initial": phase.initial, "final": phase.final}
+        yield from suspicions(phase.system, ends, ("phases", index))
 
 
 def untied(problem: Problem) -> Iterator[str]:

@@ -65,9 +65,10 @@ class ModeSequence(Strict):
 
 
 class Energy(Strict):
-    """Of a mechanism, in J. ``drift`` is the largest change over the largest kinetic energy.
+    """Of a mechanism, in J. ``drift`` is how far it strays, as a share: the error of the method.
 
-    It says something where nothing drives or brakes the mechanism.
+    The largest change over the largest kinetic energy, or what the potential one ranges over, if
+    that is more; null where something drives or brakes, so that the energy is to change.
     """
 
     initial: float | None

@@ -7,7 +7,7 @@ from schemas.problem import Problem
 from schemas.reading import spec_sha256
 from schemas.results import Certificate, Solution, finite
 from solver.certificate import CHECKS, JUDGED, certify
-from solver.hybrid import Expansion, expand, mode_guesses, mode_sequence
+from solver.hybrid import Expansion, as_posted, expand, mode_guesses, mode_sequence
 from solver.lowering import smoothed
 from solver.mechanics import limited
 from solver.meshes import SolvedMesh, solve_meshes, solve_switched
@@ -45,7 +45,8 @@ def solve_once(problem: Problem, run: Run, listen: Listen) -> Solution:
     def publish(so_far: Sequence[SolvedMesh]) -> None:
         listen(_told(expansion, problem, snapshot(expansion.problem, so_far, run)))
 
-    solved = _solved(smooth, guess, run, publish)
+    with as_posted(problem, expansion):
+        solved = _solved(smooth, guess, run, publish)
     with run.stage("certify"):
         certificate = _certificate(smooth, solved, run)
     return _told(expansion, problem, conclude(expansion.problem, solved, certificate, run))

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from schemas.events import EngineEvent
 from schemas.problem import Problem
 from schemas.results import Solution
+from solver.backends.memory import memory_told
 from solver.campaign import solve_guesses, solve_stages
 from solver.once import solve_once
 from solver.run import Run
@@ -64,4 +65,5 @@ def solve(
     def staged(problem: Problem, run: Run) -> Solution:
         return solve_stages(problem, once, run)
 
-    return solve_guesses(problem, staged, run)
+    with memory_told():
+        return solve_guesses(problem, staged, run)

@@ -63,7 +63,8 @@ def check(problem: Problem) -> Iterator[Issue]:
         return
     broken = list(torn(problem))
     if broken:
-        yield from broken
+        own = [*names.check(problem), *parts.shared(problem)]
+        yield from dict.fromkeys([*own, *broken])
         return
     for one in CHECKS:
         yield from one(problem)

@@ -1,27 +1,18 @@
 """Where a mechanism touches: friction, restitution, circles, and grounds that do not step."""
 
-import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
+from schemas.checks.heights import check_height, of_place
 from schemas.checks.masses import Numbers
 from schemas.errors import Issue
-from schemas.expressions import Call, Expression, ExpressionError, Tree, constant, names_in, walk
 from schemas.mechanisms import Mechanism, Pair, Shape, Surface
-from schemas.mechanisms.contacts import HEIGHT_NAME
 from schemas.pointers import Part, pointer
 from schemas.problem import Problem
 
-_REACH, _STEP = 20.0, 0.1
-_STEEP, _JUMP = 4.0, 1e-3
-_HALVINGS = 40
 _KINKS = ("abs", "max", "min")
 _SMOOTH = (
     "write it smooth: sqrt(x^2 + 1e-4) for abs(x), (x + sqrt(x^2 + 1e-4))/2 for max(x, 0); the "
     "method 'time_stepping' of simulations takes kinks"
-)
-_MEND = (
-    "write it as a steep ramp, such as 0.1*(1 + tanh(x/0.01))/2, or as a second surface that some "
-    "contacts may touch ('pairs')"
 )
 
 
@@ -38,9 +29,9 @@ def check(problem: Problem) -> Iterator[Issue]:
                 yield Issue(where, "a radius below 0", "0 is a point")
         for name, surface in system.surfaces.items():
             yield from _rubbing("surfaces", name, surface, numbers)
-            yield from _height(name, surface, numbers)
+            yield from check_height(surface.height, numbers.at("surfaces", name, "height"), numbers)
         for name in _held(system):
-            yield from kinked(name, system.surfaces[name], (*numbers.root,))
+            yield from kinked(name, system.surfaces[name], numbers.root)
         for name, pair in (system.pairs or {}).items():
             yield from _rubbing("pairs", name, pair, numbers)
             yield from _own(name, pair, system, numbers)
@@ -85,26 +76,14 @@ def _shape(name: str, shape: Shape, numbers: Numbers) -> Iterator[Issue]:
             yield Issue(numbers.at("shapes", name, "ellipse", side), "a half axis must be above 0")
 
 
-def _height(name: str, surface: Surface, numbers: Numbers) -> Iterator[Issue]:
-    where = numbers.at("surfaces", name, "height")
-    call = _stepping(surface.height.tree)
-    if call is not None:
-        message = f"with {call.function} the ground has a vertical step"
-        yield Issue(where, message, _MEND, call.column)
-        return
-    place = _jump(surface.height, numbers)
-    if place is not None:
-        yield Issue(where, f"the ground has a vertical step at x = {place:.4g}", _MEND)
-
-
 def kinked(name: str, surface: Surface, root: tuple[Part, ...]) -> Iterator[Issue]:
     """An issue where the slope of a surface may jump, of which ``root`` is the mechanism's place.
 
     Contacts that are held by their accelerations follow slopes: a jump of one loses them.
     """
-    call = _of_place(surface.height.tree, _KINKS)
+    call = of_place(surface.height.tree, _KINKS)
     if call is not None:
-        message = f"with {call.function} the ground has a kink, where a contact that touches is lost"
+        message = f"with {call.function} the ground has a kink; what touches it is lost there"
         where = pointer(*root, "surfaces", name, "height")
         yield Issue(where, message, _SMOOTH, call.column)
 
@@ -114,49 +93,3 @@ def _held(system: Mechanism) -> list[str]:
     touching = system.touching
     found = {touching[pair].against for pair in system.mode if pair in touching}
     return [name for name in system.surfaces if name in found]
-
-
-def _stepping(height: Tree) -> Call | None:
-    """A function that jumps, of the place."""
-    return _of_place(height, ("sign",))
-
-
-def _of_place(height: Tree, functions: Sequence[str]) -> Call | None:
-    """The first of some functions that the place enters."""
-    calls = [one for one in walk(height) if isinstance(one, Call) and one.function in functions]
-    of_place = (one for one in calls if any(n.name == HEIGHT_NAME for n in names_in(one)))
-    return next(of_place, None)
-
-
-def _jump(height: Expression, numbers: Numbers) -> float | None:
-    """Where the height jumps, near the origin; searched where it is steep, down to rounding."""
-    if not any(name.name == HEIGHT_NAME for name in names_in(height.tree)):
-        return None
-    count = round(2 * _REACH / _STEP) + 1
-    grid = [-_REACH + _STEP * (i + 0.123) for i in range(count)]
-    heights = [_at(height, x, numbers) for x in grid]
-    for i in range(count - 1):
-        if abs(heights[i + 1] - heights[i]) > _STEEP * _STEP:
-            found = _narrowed(height, grid[i], grid[i + 1], numbers)
-            if found is not None:
-                return found
-    return None
-
-
-def _narrowed(height: Expression, left: float, right: float, numbers: Numbers) -> float | None:
-    a, b = _at(height, left, numbers), _at(height, right, numbers)
-    for _ in range(_HALVINGS):
-        middle = (left + right) / 2
-        value = _at(height, middle, numbers)
-        if abs(value - a) > abs(b - value):
-            right, b = middle, value
-        else:
-            left, a = middle, value
-    return (left + right) / 2 if abs(b - a) > _JUMP else None
-
-
-def _at(height: Expression, x: float, numbers: Numbers) -> float:
-    try:
-        return constant(height.tree, {**numbers.known, HEIGHT_NAME: x})
-    except ExpressionError:
-        return math.nan

@@ -26,12 +26,11 @@ Use = tuple[tuple[Part, ...], str, str, Collection[str]]
 
 def check(problem: Problem) -> Iterator[Issue]:
     """Unknown bodies, joints, contacts, surfaces; names that two parts would share."""
-    phases = {phase.name for phase in problem.phases}
+    yield from shared(problem)
     for index, phase in enumerate(problem.phases):
         if isinstance(phase.system, Mechanism):
             root = ("phases", index, "system")
             yield from _missing(_uses(phase.system), root)
-            yield from _shared(phase.system, root, phases)
             yield from _alone(phase.system, root)
 
 
@@ -43,6 +42,14 @@ def unjoined(problem: Problem) -> Iterator[Issue]:
             if GROUND in phase.system.bodies:
                 yield _reserved(GROUND, "a body", pointer(*root, "bodies", GROUND))
             yield from _missing(_joined(phase.system), root)
+
+
+def shared(problem: Problem) -> Iterator[Issue]:
+    """Names that are reserved, or that two parts of a mechanism would have."""
+    phases = {phase.name for phase in problem.phases}
+    for index, phase in enumerate(problem.phases):
+        if isinstance(phase.system, Mechanism):
+            yield from _shared(phase.system, ("phases", index, "system"), phases)
 
 
 def _reserved(name: str, kind: str, where: str) -> Issue:

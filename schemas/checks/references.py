@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from schemas.checks.places import Place, places, variables
 from schemas.errors import Issue
-from schemas.expressions import Name, derivative, names_in, split
+from schemas.expressions import Name, derivative, names_in, split, stem
 from schemas.expressions.errors import quoted
 from schemas.expressions.names import DERIVATIVES
 from schemas.habits import as_rate
@@ -35,6 +35,8 @@ def check(problem: Problem) -> Iterator[Issue]:
 
 
 def _hint(name: str, place: Place) -> str:
+    if _is_height(place):
+        return _of_height(name, place)
     elsewhere = _elsewhere(name, place, place.phase) if place.phase else ""
     told = elsewhere or _habit(name, place) or _misplaced(name, place)
     if told:
@@ -46,6 +48,18 @@ def _hint(name: str, place: Place) -> str:
     if near:
         return near
     return "known here: " + ", ".join(some[:_SHOWN]) + (", ..." if len(some) > _SHOWN else "")
+
+
+def _is_height(place: Place) -> bool:
+    """Whether it is that of a surface of a mechanism."""
+    return place.parts[-3:-2] == ("surfaces",) and place.parts[-1] == "height"
+
+
+def _of_height(name: str, place: Place) -> str:
+    """The ground stands still."""
+    moves = name == "t" or (place.phase is not None and stem(name)[1] in variables(place.phase))
+    still = "the ground does not move: its height is an expression of x and of constants"
+    return still if moves else did_you_mean(name, place.visible.words) or still
 
 
 def _habit(name: str, place: Place) -> str:

@@ -8,6 +8,7 @@ from schemas.expressions.errors import ExpressionError, quoted
 from schemas.expressions.tokens import MAX_DEPTH, TOO_LARGE, Token
 
 _DEGREES = frozenset({"deg", "degree", "degrees"})
+_UNITS = frozenset({"kg", "g", "m", "cm", "mm", "km", "s", "ms", "N", "Nm", "rad", "Hz", "J", "W"})
 
 
 def check_order(tokens: list[Token]) -> None:
@@ -74,6 +75,8 @@ def _missing_operator(before: Token, token: Token) -> ExpressionError:
         hint = "angles are in radians: write 90*pi/180 for 90 degrees"
     elif token.text != "(" and before.text != ")":
         hint = f"to multiply, write {quoted(before.text)[1:-1]}*{quoted(token.text)[1:-1]}"
+        if before.kind == "number" and token.text in _UNITS:
+            hint = f"units are SI and left out: write {before.text[-60:]}; {hint}"
     return ExpressionError(
         f"an operator is missing between '{before.text[-60:]}' and '{token.text[:60]}'",
         token.column,

@@ -4,9 +4,9 @@ The language's own reading of a mechanism, shared by all who work on one: no phy
 """
 
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import NamedTuple, assert_never
 
-from schemas.mechanisms.parts import GROUND, Floating, Joint, Prismatic, Revolute
+from schemas.mechanisms.parts import GROUND, Floating, Joint, Prismatic, Revolute, Welded
 
 
 class Link(NamedTuple):
@@ -52,5 +52,7 @@ def coordinates(name: str, joint: Joint, *, absolute: bool) -> tuple[str, ...]:
             return (f"{joint.child}.angle",) if absolute else (name,)
         case Prismatic():
             return (name,)
-        case _:
+        case Welded():
             return ()
+        case _:
+            assert_never(joint)

@@ -4,14 +4,12 @@ Its system and all its expressions are looked at as those of a problem of one ph
 `schemas.checks` say what they say there, at the places of the simulation.
 """
 
-import math
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
 
-from schemas import checks, resolve
-from schemas.checks.contacts import kinked
+from schemas import checks
 from schemas.errors import Issue
-from schemas.expressions import Expression, ExpressionError, names_in, split
+from schemas.expressions import Expression, names_in, split
 from schemas.expressions.errors import quoted
 from schemas.habits import as_rate
 from schemas.limits import MODEL_LIMITS
@@ -30,6 +28,7 @@ from schemas.simulations.document import (
     SolutionSignal,
     TimeStepping,
 )
+from schemas.simulations.methods import check_method
 from schemas.suggest import did_you_mean
 from schemas.systems import ClosedForm, Ode, SecondOrder
 from schemas.urdf import Urdf
@@ -50,7 +49,7 @@ def check(simulation: Simulation) -> Iterator[Issue]:
         some = range(start, min(start + MODEL_LIMITS.constraints, len(expressions)))
         problem = _as_problem(simulation, expressions, some)
         found = [_moved(one, expressions, start) for one in checks.check(problem)]
-    yield from found or _numbers(simulation)
+    yield from found or check_method(simulation)
 
 
 def _torn(simulation: Simulation) -> list[Issue]:
@@ -171,48 +170,6 @@ def _method(simulation: Simulation) -> Iterator[Issue]:
             f"the method '{method.kind}' finds the mode by itself",
             "leave it out: the mode at the start follows from the initial state",
         )
-
-
-def _grounds(simulation: Simulation) -> Iterator[Issue]:
-    """What holds contacts by their accelerations would lose them at a kink of the ground."""
-    system = simulation.system
-    if isinstance(system, Mechanism) and isinstance(simulation.method, Events):
-        touched = {pair.against for pair in system.touching.values()}
-        for name in system.surfaces.keys() & touched:
-            yield from kinked(name, system.surfaces[name], ("system",))
-
-
-def _numbers(simulation: Simulation) -> Iterator[Issue]:
-    """Constants of the method that have no meaning, and more steps than there may be."""
-    method = simulation.method
-    if isinstance(method, Smooth):
-        return
-    bounce = _value(simulation, method.restitution)
-    if bounce is not None and not 0 <= bounce <= 1:
-        yield Issue(
-            pointer("method", "restitution"),
-            f"a coefficient of restitution of {bounce:g}",
-            "it is from 0, where nothing bounces, to 1, where no energy is lost",
-        )
-    duration = _value(simulation, simulation.duration)
-    if isinstance(method, TimeStepping) and duration is not None:
-        steps, most = math.ceil(duration / method.step), MODEL_LIMITS.simulation_steps
-        if steps > most:
-            yield Issue(
-                pointer("method", "step"),
-                f"{duration:g} s make {steps} steps of {method.step:g} s; at most {most} are taken",
-                f"take steps of {duration / most:.3g} s or more, or a shorter duration",
-            )
-
-
-def _value(simulation: Simulation, given: Scalar | None) -> float | None:
-    """The number, where it has one already."""
-    try:
-        fixed = {name: resolve.scalar(one, {}) for name, one in simulation.static.items()}
-        known = {**fixed, **resolve.parameters(simulation.system)}
-        return None if given is None else resolve.scalar(given, known)
-    except ExpressionError:
-        return None
 
 
 def _names(simulation: Simulation) -> Iterator[Issue]:

@@ -7,7 +7,7 @@ from pydantic import ValidationError
 
 from schemas.complaints import issue_of
 from schemas.errors import BadProblem, Issue
-from schemas.reading import MAX_ISSUES, Document, read_document, read_inlined
+from schemas.reading import MAX_ISSUES, Document, misdirected, read_document, read_inlined
 from schemas.simulations.checks import check
 from schemas.simulations.document import Simulation
 
@@ -29,7 +29,8 @@ def read_simulation(
     BadProblem
         With every issue found by the first step that found any; at most `MAX_ISSUES` are kept.
     """
-    document = read_document(data)
+    document = read_document(data, "simulation")
+    _refuse(misdirected(document, "simulation"))
     if inline is not None:
         document = read_inlined(document, inline)
     try:

@@ -214,7 +214,7 @@ class Urdf(Posted):
         links = list(self.tree.links)
         for field, what in (("contacts", self.contacts), ("forces", self.forces)):
             for name, one in what.items():
-                told = f"the link '{one.link}' of '{name}'"
+                told = f"the link of '{name}'"
                 _among(told, one.link, links, "a link", (field, name, "link"))
         for name in self.mode:
             told = f"'{name}' in 'mode'"

@@ -113,13 +113,12 @@ def check(problem: Problem) -> tuple[list[Issue], list[str]]:
     """What is wrong with a problem or simulation; and warnings about one that is fine."""
     document = read_document(problem)
     with _needs("worker", "checking a problem in this process"):
-        from schemas.remarks import remarks
+        from schemas.remarks import remarks, simulated_remarks
 
         try:
             with _translated():
                 if is_simulation(document):
-                    _read_simulation(document)
-                    return [], []
+                    return [], list(simulated_remarks(_read_simulation(document)))
                 return [], list(remarks(_read(document)))
         except BadProblem as error:
             return error.issues, []

@@ -46,11 +46,12 @@ def summarize_simulation(result: Mapping[str, Any]) -> str:
 
 
 def energy_words(energy: Mapping[str, Any]) -> str:
-    """From where to where, and how far it strayed on the way."""
-    return (
-        f"{number(energy['initial'], 6)} to {number(energy['final'], 6)} J, "
-        f"drift {number(energy['drift'], 3)}"
-    )
+    """From where to where; and how far it strayed on the way, where nothing drives or brakes."""
+    first, last = energy["initial"], energy["final"]
+    ends = f"{number(first, 6)} to {number(last, 6)} J"
+    if energy["drift"] is not None:
+        return f"{ends}, drift {number(energy['drift'], 3)}"
+    return ends if first is None or last is None else f"{ends}, change {number(last - first, 6)} J"
 
 
 def event_table(events: Sequence[Mapping[str, Any]]) -> str:

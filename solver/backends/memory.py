@@ -38,3 +38,14 @@ def memory_watch(options: dict[str, Any]) -> Iterator[Callable[[], None]]:
                 raise MemoryError("the linear solver ran out of memory")
 
         yield check
+
+
+@contextmanager
+def memory_told() -> Iterator[None]:
+    """CasADi's word for missing memory, a RuntimeError, as the MemoryError that it is."""
+    try:
+        yield
+    except RuntimeError as error:
+        if "bad_alloc" in str(error):
+            raise MemoryError("the engine ran out of memory") from error
+        raise

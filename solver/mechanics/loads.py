@@ -9,9 +9,10 @@ frame; moments of places ``v`` fixed in a turner's frame are ``c A - s B`` with 
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from typing import assert_never
 
 from schemas.expressions import Call, Name, Tree
-from schemas.mechanisms import GROUND, Floating, Link, Prismatic, Revolute
+from schemas.mechanisms import GROUND, Floating, Link, Prismatic, Revolute, Welded
 from solver.mechanics.frames import Frames
 from solver.mechanics.trees import ORIGIN, ZERO, Vec, cross, dot, less, minus, plus, times
 
@@ -86,8 +87,10 @@ class Balance:
                 return {
                     link.joint_name: plus(dot(carried.axis, (lengthwise, across)), effort),
                 }
-            case _:
+            case Welded():  # what it carries has its body's mount, and is carried by that
                 return {}
+            case _:
+                assert_never(link.joint)
 
     def _hinged(self, link: Link, force: Vec, effort: Tree) -> Tree:
         parent = self.frames.frames[link.parent]

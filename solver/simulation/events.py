@@ -19,6 +19,7 @@ from solver.simulation.execution import execute
 from solver.simulation.experiment import Experiment, Halt, Outcome, Stretch
 from solver.simulation.guarded import Guarded, OneMode
 from solver.simulation.held import OPEN, Touch, held
+from solver.simulation.smooth import no_rates
 from solver.simulation.spans import Execution, Settings, Span
 from solver.simulation.unilateral import Unilateral, check_start
 
@@ -42,12 +43,28 @@ def events(experiment: Experiment, halt: Halt) -> Outcome:
     pieces = experiment.drive.pieces(experiment.start, experiment.end)
     inner: Automaton[Any] = OneMode(experiment)
     if system is not None:
-        check_start(system, Moment(pieces[0], experiment.state, (pieces[0] + pieces[1]) / 2))
+        moment = Moment(pieces[0], experiment.state, (pieces[0] + pieces[1]) / 2)
+        check_start(system, moment, experiment.simulation.initial)
         _check_guards(experiment)
         inner = ContactAutomaton.of(system, chosen.escape_velocity)
     automaton = Guarded.of(inner, experiment) if experiment.simulation.events else inner
-    done = execute(automaton, experiment.state, pieces, _settings(chosen, system, halt))
+    try:
+        done = execute(automaton, experiment.state, pieces, _settings(chosen, system, halt))
+    except np.linalg.LinAlgError:
+        return _singular(experiment)
+    if done.status is SimulationStatus.INVALID_NUMBER:
+        done.message = no_rates(experiment, done.state, done.end)
     return _outcome(done, system)
+
+
+def _singular(experiment: Experiment) -> Outcome:
+    """No motion beyond the start, where the mass matrix becomes singular on the way."""
+    start = experiment.state
+    stretch = Stretch(
+        np.array([experiment.start]), lambda _, t: np.repeat(start[:, None], len(t), axis=1)
+    )
+    message = "the masses are singular in a pose on the way: give every body an inertia"
+    return Outcome([stretch], SimulationStatus.INVALID_NUMBER, message)
 
 
 def system_of(experiment: Experiment, restitution: Scalar | None) -> Unilateral | None:

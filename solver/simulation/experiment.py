@@ -1,6 +1,6 @@
 """What is simulated, made ready; and what a method gives back."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -15,6 +15,7 @@ from schemas.systems import System
 from schemas.urdf import Urdf
 from solver.numeric.tape import Array
 from solver.simulation.drive import Drive, circular
+from solver.simulation.inertias import check_inertias
 from solver.simulation.multibody import Multibody
 from solver.simulation.plant import MechanismPlant, Plant, plant_of
 from solver.simulation.spatial import SpatialMultibody
@@ -58,8 +59,9 @@ class Experiment:
         given = _upright(system) | given
         state = np.array([given.get(name, 0.0) for name in plant.states])
         issue = circular(simulation, plant, np.array([start]), state[:, None])
-        if issue is not None:
-            raise InvalidModel([issue])
+        _refuse([issue] if issue is not None else [])
+        if isinstance(plant, MechanismPlant):
+            _refuse(check_inertias(plant.model, state[: len(state) // 2]))
         drive = Drive.of(simulation, plant)
         return cls(simulation, plant, drive, state, start, start + duration, statics)
 
@@ -77,6 +79,12 @@ class Experiment:
     def mechanism(self) -> MechanismPlant | None:
         """The plant, where it is a mechanism."""
         return self.plant if isinstance(self.plant, MechanismPlant) else None
+
+
+def _refuse(issues: Iterable[Issue]) -> None:
+    found = list(issues)
+    if found:
+        raise InvalidModel(found)
 
 
 def _upright(system: System) -> dict[str, float]:

@@ -2,11 +2,20 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import assert_never
 
 import numpy as np
 
 from schemas.expressions import Expression, Tree
-from schemas.mechanisms import Mechanism, Motor, Prismatic, Revolute, motor_control
+from schemas.mechanisms import (
+    Floating,
+    Mechanism,
+    Motor,
+    Prismatic,
+    Revolute,
+    Welded,
+    motor_control,
+)
 from solver.numeric.tape import Array
 from solver.simulation.constants import Constants
 from solver.simulation.kinematics import Complex, Kinematics, Points, Pose
@@ -27,16 +36,19 @@ class Axes:
         number, q = kinematics.rows, kinematics.coordinates
         for link in mechanism.links:
             child, parent = number[link.body], number[link.parent]
-            if isinstance(link.joint, Prismatic):
-                rows.append(np.eye(len(q))[list(q).index(link.coordinates[0])])
-                offsets.append(0.0)
-            elif isinstance(link.joint, Revolute):
-                rows.append(kinematics.turning[child] - kinematics.turning[parent])
-                apart = kinematics.offsets[child] - kinematics.offsets[parent]
-                absolute = link.coordinates[0] != link.joint_name
-                offsets.append(apart - constants.number(link.joint.angle) if absolute else 0.0)
-            else:
-                continue
+            match link.joint:
+                case Prismatic():
+                    rows.append(np.eye(len(q))[list(q).index(link.coordinates[0])])
+                    offsets.append(0.0)
+                case Revolute():
+                    rows.append(kinematics.turning[child] - kinematics.turning[parent])
+                    apart = kinematics.offsets[child] - kinematics.offsets[parent]
+                    absolute = link.coordinates[0] != link.joint_name
+                    offsets.append(apart - constants.number(link.joint.angle) if absolute else 0.0)
+                case Welded() | Floating():  # no single coordinate
+                    continue
+                case _:
+                    assert_never(link.joint)
             names.append(link.joint_name)
         return cls(tuple(names), np.reshape(rows, (len(names), len(q))), np.array(offsets))
 

@@ -13,8 +13,12 @@ from schemas.limits import MODEL_LIMITS
 from schemas.results import CurveGroup, Group, PhaseResult, finite
 from schemas.simulated import Energy, ModeSequence
 from solver.numeric.tape import Array
+from solver.simulation.exchange import changing
 from solver.simulation.experiment import Experiment, Outcome, Stretch
 from solver.simulation.frames import with_frames
+from solver.simulation.multibody import Multibody
+from solver.simulation.spatial import SpatialMultibody
+from solver.simulation.spatial_instant import SpatialInstant
 
 MAX_PIECES = MODEL_LIMITS.segments
 """Of the published curves; where there are more steps, each piece holds some of them."""
@@ -54,18 +58,31 @@ def energy_of(experiment: Experiment, outcome: Outcome) -> Energy | None:
     if model is None:
         return None
     names = ["energy.kinetic", "energy.potential"]
-    rows = [np.zeros((2, 0))]
+    rows, driven = [np.zeros((2, 0))], False
     for stretch in outcome.stretches:
         t = stretch.times
-        x, u = _at(experiment, stretch, t)
-        n = len(x) // 2
+        x, u = along(experiment, stretch, t)
+        n, driven = len(x) // 2, driven or bool(np.any(u))
         rows.append(model.values(names, t, x[:n], x[n:], u))
     kinetic, potential = np.concatenate(rows, axis=1)
     if not len(kinetic):
         return None
-    total, most = kinetic + potential, float(kinetic.max())
-    drift = float(np.abs(total - total[0]).max()) / most if most > 0 else 0.0
-    return Energy(initial=finite(total[0]), final=finite(total[-1]), drift=finite(drift))
+    total = kinetic + potential
+    change = float(np.abs(total - total[0]).max())
+    size = max(float(kinetic.max()), float(np.ptp(potential)), _least(model))
+    kept = not (driven or changing(experiment, outcome))
+    return Energy(
+        initial=finite(total[0]),
+        final=finite(total[-1]),
+        drift=finite(change / size) if kept else None,
+    )
+
+
+def _least(model: Multibody | SpatialMultibody) -> float:
+    """The energy below which drifts are round-off: that of all its mass at 1 mm/s, J."""
+    at = model.at(0.0, np.ones((len(model.coordinates), 1)))
+    mass = at.mass_total if isinstance(at, SpatialInstant) else at.parts.masses.sum()
+    return 1e-6 * float(mass) or 1e-12
 
 
 def sequence_of(experiment: Experiment, outcome: Outcome) -> ModeSequence | None:
@@ -109,12 +126,12 @@ def tabulate(experiment: Experiment, outcome: Outcome, samples: int) -> Table:
 
 
 def _sampled(experiment: Experiment, outcome: Outcome, stretch: Stretch, times: Array) -> Table:
-    x, u = _at(experiment, stretch, times)
+    x, u = along(experiment, stretch, times)
     forces = outcome.forces(stretch, times, x, u) if outcome.forces else {}
     return Table(times, x, u, forces)
 
 
-def _at(experiment: Experiment, stretch: Stretch, times: Array) -> tuple[Array, Array]:
+def along(experiment: Experiment, stretch: Stretch, times: Array) -> tuple[Array, Array]:
     """States and controls (names, k) at times (k,) of a stretch."""
     steps = np.searchsorted(stretch.times, times, side="right") - 1
     steps = np.clip(steps, 0, max(len(stretch.times) - 2, 0))
@@ -147,7 +164,7 @@ def _curves(experiment: Experiment, outcome: Outcome) -> dict[str, CurveGroup]:
         edges = [*stretch.times[:-1:stride].tolist(), float(stretch.times[-1])]
         for a, b in pairwise(edges):
             t = a + (b - a) * (nodes + 1) / 2
-            x, u = _at(experiment, stretch, t)
+            x, u = along(experiment, stretch, t)
             xs.append(x.T)
             us.append(u.T)
             breaks.append(a)

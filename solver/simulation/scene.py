@@ -1,6 +1,7 @@
 """What a mechanism looks like: the parts of its drawing that do not change with time."""
 
 from collections.abc import Iterator, Mapping
+from typing import assert_never
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from schemas.frames import (
     ShapeLook,
     Spot,
 )
-from schemas.mechanisms import Floating, Mechanism, Place, Prismatic, Revolute
+from schemas.mechanisms import Floating, Link, Mechanism, Place, Prismatic, Revolute, Welded
 from schemas.mechanisms.contacts import HEIGHT_NAME
 from solver.numeric.tape import Array, Scope, record
 from solver.simulation.constants import Constants
@@ -103,27 +104,35 @@ def _joints(
     mechanism: Mechanism, constants: Constants, travel: Mapping[str, Span]
 ) -> Iterator[tuple[str, JointLook]]:
     for link in mechanism.links:
-        joint = link.joint
-        if isinstance(joint, Revolute):
-            at = point(constants.vector(joint.at))
-            hinge = JointLook(kind="revolute", body=link.parent, child=link.body, at=at)
-            yield link.joint_name, hinge
-        elif isinstance(joint, Prismatic):
-            along, start = constants.unit(joint.axis), constants.vector(joint.at)
-            low, high = travel[link.coordinates[0]]
-            yield (
-                link.joint_name,
-                JointLook(
-                    kind="prismatic",
-                    body=link.parent,
-                    child=link.body,
-                    at=point(start + low * along),
-                    end=point(start + high * along),
-                ),
-            )
+        look = _joint(link, constants, travel)
+        if look is not None:
+            yield link.joint_name, look
     for name, loop in mechanism.loops.items():
         spot = _spot(loop.between[0], constants)
         yield name, JointLook(kind="loop", body=spot.body, at=spot.at)
+
+
+def _joint(link: Link, constants: Constants, travel: Mapping[str, Span]) -> JointLook | None:
+    """What is drawn of a joint; None: nothing."""
+    joint = link.joint
+    match joint:
+        case Revolute():
+            at = point(constants.vector(joint.at))
+            return JointLook(kind="revolute", body=link.parent, child=link.body, at=at)
+        case Prismatic():
+            along, start = constants.unit(joint.axis), constants.vector(joint.at)
+            low, high = travel[link.coordinates[0]]
+            return JointLook(
+                kind="prismatic",
+                body=link.parent,
+                child=link.body,
+                at=point(start + low * along),
+                end=point(start + high * along),
+            )
+        case Welded() | Floating():
+            return None
+        case _:
+            assert_never(joint)
 
 
 def _shapes(mechanism: Mechanism, constants: Constants) -> Iterator[tuple[str, ShapeLook]]:

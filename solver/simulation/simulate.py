@@ -4,10 +4,12 @@ import importlib.metadata
 import platform
 import time
 from collections.abc import Callable
+from dataclasses import replace
 
 from schemas.events import Advanced, EngineEvent, StageStarted
 from schemas.limits import MODEL_LIMITS
 from schemas.reading import spec_sha256
+from schemas.remarks import simulated_remarks
 from schemas.results import Reproduce
 from schemas.simulated import SimulationResult, SimulationStatus, SimulationTiming
 from schemas.simulations import Simulation
@@ -16,6 +18,7 @@ from solver.simulation.experiment import Experiment, Halt, Outcome
 from solver.simulation.results import energy_of, phase_result, sequence_of, thinning
 from solver.simulation.smooth import smooth
 from solver.simulation.time_stepping import time_stepping
+from solver.simulation.unheeded import remarks, too_deep
 
 METHODS: dict[str, Callable[[Experiment, Halt], Outcome]] = {
     "smooth": smooth,
@@ -61,13 +64,18 @@ def simulate(
     outcome = METHODS[simulation.method.kind](
         experiment, _watch(experiment, on_event, last, should_stop)
     )
+    outcome = _judged(experiment, outcome)
     moved = time.monotonic()
     return SimulationResult(
         name=simulation.name,
         status=outcome.status,
         message=outcome.message or _message(experiment, outcome),
         advice=list(outcome.advice),
-        warnings=_warnings(outcome),
+        warnings=[
+            *simulated_remarks(simulation),
+            *_warnings(outcome),
+            *remarks(experiment, outcome),
+        ],
         phases=[phase_result(experiment, outcome, simulation.samples)],
         events=list(outcome.events),
         mode_sequence=sequence_of(experiment, outcome),
@@ -81,6 +89,14 @@ def simulate(
         ),
         reproduce=Reproduce(spec_sha256=spec_sha256(simulation), versions=_versions()),
     )
+
+
+def _judged(experiment: Experiment, outcome: Outcome) -> Outcome:
+    """What went through the ground has not come to its end."""
+    if outcome.status not in (SimulationStatus.FINISHED, SimulationStatus.STOPPED):
+        return outcome
+    found = too_deep(experiment, outcome)
+    return outcome if found is None else replace(outcome, status=found[0], message=found[1])
 
 
 def _watch(

@@ -4,7 +4,7 @@ The contacts of the system's ``mode`` and its loops hold by their accelerations:
 is part of the error, and is seen in the gaps.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 
@@ -13,13 +13,23 @@ import scipy  # loads scipy.integrate, which takes long, when it is first asked 
 
 from schemas.errors import InvalidModel, Issue
 from schemas.expressions import Name
+from schemas.pointers import pointer
 from schemas.simulated import SimulationStatus
 from schemas.simulations import Smooth
 from solver.numeric.tape import Array
 from solver.simulation.experiment import Experiment, Halt, Outcome, Stretch
+from solver.simulation.multibody import Multibody
+from solver.simulation.starts import open_loops, parting_loops
+from solver.simulation.touch import Contacts
 
 HELD = 1e-6
 """How far off, in m and m/s, what is held may be at the start."""
+
+STILL = "what is held is zero at the start: change 'initial', or leave it out of the mode"
+AHEAD = {"sliding_right": 1.0, "sliding_left": -1.0}
+
+_SHOWN = 6
+"""States that a message lists."""
 
 Dense = Callable[[Array], Array]
 
@@ -50,9 +60,7 @@ def smooth(experiment: Experiment, halt: Halt) -> Outcome:
             break
     status, message = stop or (SimulationStatus.FINISHED, "")
     return Outcome(
-        [Stretch(np.array(path.times), lambda step, t: path.curves[step](t))]
-        if path.curves
-        else [],
+        [_stretch(path, experiment.state)],
         status,
         message,
         forces=_forces(experiment),
@@ -61,32 +69,50 @@ def smooth(experiment: Experiment, halt: Halt) -> Outcome:
     )
 
 
+def _stretch(path: _Path, start: Array) -> Stretch:
+    """The steps; where there is none, the start alone."""
+    if path.curves:
+        return Stretch(np.array(path.times), lambda step, t: path.curves[step](t))
+    return Stretch(np.array(path.times), lambda _, t: np.repeat(start[:, None], len(t), axis=1))
+
+
 def _check_start(experiment: Experiment) -> None:
     """What is held only by its acceleration has to be in place, and at rest, at the start."""
     plant = experiment.mechanism
     if plant is None:
         return
     model = plant.model
-    q, v = np.split(experiment.state, 2)
-    at = model.at(experiment.start, q, v)
-    off: dict[str, float] = {}
-    for name, doing in model.mechanism.mode.items():
-        row, touch = model.pairs.index(name), at.contacts
-        off[f"the gap of contact '{name}', m"] = touch.gaps[row, 0]
-        off[f"the gap's rate of contact '{name}', m/s"] = touch.gap_rates[row, 0]
-        if doing == "sticking":
-            off[f"the slip of contact '{name}', m/s"] = touch.slips[row, 0]
-    for row, name in enumerate(model.mechanism.loops):
-        off[f"the opening of loop '{name}', m"] = abs(at.loops.z[row, 0])
-        off[f"the opening of loop '{name}', m/s"] = abs(at.loops.rate[row, 0])
-    hint = "what is held is zero at the start: change 'initial', or leave it out of the mode"
+    at = model.at(experiment.start, *np.split(experiment.state, 2))
     issues = [
-        Issue("/initial", f"{what}, is {size:.3g} at the start", hint)
-        for what, size in off.items()
-        if not abs(size) <= HELD
+        *_contacts_off(model, at.contacts),
+        *open_loops(model, at, experiment.simulation.initial, HELD),
     ]
+    issues = issues or [*parting_loops(model, at, HELD)]
     if issues:
         raise InvalidModel(issues)
+
+
+def _contacts_off(model: Multibody, touch: Contacts) -> Iterator[Issue]:
+    """Contacts of the mode that are apart, or move as the mode does not say."""
+    for name, doing in model.mechanism.mode.items():
+        row = model.pairs.index(name)
+        slip = float(touch.slips[row, 0])
+        off = {
+            "the gap of contact '{}', m": touch.gaps[row, 0],
+            "the gap's rate of contact '{}', m/s": touch.gap_rates[row, 0],
+            "the slip of contact '{}', m/s": slip if doing == "sticking" else 0.0,
+        }
+        for what, size in off.items():
+            if not abs(size) <= HELD:
+                message = f"{what.format(name)}, is {size:.3g} at the start"
+                yield Issue("/initial", message, STILL)
+        other = "sliding_left" if doing == "sliding_right" else "sliding_right"
+        if doing in ("sliding_left", "sliding_right") and slip * AHEAD[doing] < -HELD:
+            yield Issue(
+                pointer("system", "mode", name),
+                f"the contact '{name}' is {doing}, but its slip is {slip:.3g} m/s at the start",
+                f"write '{other}', or the method 'events', which finds the mode by itself",
+            )
 
 
 def _piece(
@@ -103,7 +129,7 @@ def _piece(
     with np.errstate(all="ignore"):
         first = rates(span[0], state)
         if not np.all(np.isfinite(first)):
-            return state, (SimulationStatus.INVALID_NUMBER, _where(experiment, first, span[0]))
+            return state, (SimulationStatus.INVALID_NUMBER, no_rates(experiment, state, span[0]))
         solver = scipy.integrate.DOP853(
             rates,
             span[0],
@@ -132,7 +158,7 @@ def _failed(
     """The steps have become as small as numbers go: why, as far as one can see."""
     now = rates(t, state)
     if not np.all(np.isfinite(now)):
-        return SimulationStatus.INVALID_NUMBER, _where(experiment, now, t)
+        return SimulationStatus.INVALID_NUMBER, no_rates(experiment, state, t)
     fastest = experiment.plant.states[int(np.argmax(np.abs(now)))]
     message = (
         f"The steps vanish at t = {t:.9g} s, where {fastest} changes by {np.abs(now).max():.3g}/s."
@@ -140,10 +166,20 @@ def _failed(
     return SimulationStatus.DIVERGED, message
 
 
-def _where(experiment: Experiment, rates: Array, t: float) -> str:
+def no_rates(experiment: Experiment, state: Array, t: float) -> str:
+    """Which rates have no value, where; the state says why, more often than not."""
     names = experiment.plant.states
+    with np.errstate(all="ignore"):
+        rates = experiment.rates(t, state, t)
     bad = [name for name, rate in zip(names, rates, strict=True) if not np.isfinite(rate)]
-    return f"The rate of {' and '.join(bad[:3])} has no finite value at t = {t:.9g} s."
+    if not bad:
+        return f"The rates have no finite value at t = {t:.9g} s."
+    shown = [f"{name} = {one:.6g}" for name, one in zip(names, state, strict=True)][:_SHOWN]
+    more = ", ..." if len(names) > _SHOWN else ""
+    which = " and ".join(bad[:3])
+    return (
+        f"The rate of {which} has no finite value at t = {t:.9g} s, where {', '.join(shown)}{more}."
+    )
 
 
 def _forces(

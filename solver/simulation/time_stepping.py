@@ -46,7 +46,8 @@ def time_stepping(experiment: Experiment, halt: Halt) -> Outcome:
     if system is None:
         raise NotImplementedError  # the schema refuses other systems
     start, end = experiment.start, experiment.end
-    check_start(system, Moment(start, experiment.state, start + chosen.step / 2))
+    moment = Moment(start, experiment.state, start + chosen.step / 2)
+    check_start(system, moment, experiment.simulation.initial)
     path = _Path([start], [experiment.state])
     count = max(math.ceil((end - start) / chosen.step * (1 - 1e-12)), 1)
     stop = None

@@ -4,19 +4,21 @@ First the pairs, in the order of the multibody, then the joints' limits, which h
 """
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
+from typing import assert_never
 
 import numpy as np
 
 from schemas import resolve
-from schemas.errors import InvalidModel, Issue
-from schemas.mechanisms import Prismatic, Revolute
+from schemas.errors import InvalidModel
+from schemas.mechanisms import Floating, Prismatic, Revolute, Welded
 from solver.numeric.tape import Array
 from solver.simulation.automaton import Moment
 from solver.simulation.instant import Instant
 from solver.simulation.kinematics import Complex
 from solver.simulation.multibody import Multibody
+from solver.simulation.starts import inside, open_loops, past
 
 DEEP = 1e-6
 """A start that penetrates more than this is refused, m."""
@@ -124,28 +126,33 @@ class Unilateral:
         )
 
 
-def check_start(system: Unilateral, moment: Moment) -> None:
-    """Look at a start.
+def check_start(system: Unilateral, moment: Moment, given: Collection[str] = ()) -> None:
+    """Look at a start; ``given`` coordinates are not the ones to change.
 
     Raises
     ------
     InvalidModel
-        Where contacts penetrate, joints are beyond their limits, or loops are open.
+        Where contacts penetrate or have no ground, joints are beyond their limits, or loops open.
     """
-    here = system.piece(moment.within)
-    rows = here.rows(here.at(np.array([moment.time]), moment.state[:, None]))
-    issues = [
-        Issue("/initial", f"'{name}' starts {-gap:.3g} beyond its limit", "move the start apart")
-        for name, gap in zip(system.names, rows.gaps[:, 0], strict=True)
-        if gap < -DEEP
-    ]
-    wide = np.max(np.abs(rows.loop_gaps), initial=0.0)
-    if wide > DEEP:
-        issues.append(
-            Issue("/initial", f"loops are open by {wide:.3g} m", "close them at the start")
-        )
+    here, model = system.piece(moment.within), system.multibody
+    with np.errstate(all="ignore"):
+        at = here.at(np.array([moment.time]), moment.state[:, None])
+        gaps = here.rows(at).gaps[:, 0]
+    issues = []
+    for row, (name, gap) in enumerate(zip(system.names, gaps, strict=True)):
+        if not gap >= -DEEP:
+            touches = row < system.pairs
+            issues.append(
+                inside(model, at, name, gap) if touches else past(name, gap, _unit(model, name))
+            )
+    issues += open_loops(model, at, given, DEEP)
     if issues:
         raise InvalidModel(issues)
+
+
+def _unit(model: Multibody, limit: str) -> str:
+    joint = model.mechanism.joints[limit.rpartition(".")[0]]
+    return "m" if isinstance(joint, Prismatic) else "rad"
 
 
 def _both(values: Complex) -> Array:
@@ -161,8 +168,13 @@ def _limits(
     axes, joints = multibody.parts.axes, multibody.mechanism.joints
     for row, name in enumerate(axes.names):
         joint = joints[name]
-        if not isinstance(joint, Revolute | Prismatic):
-            continue
+        match joint:
+            case Revolute() | Prismatic():
+                pass
+            case Welded() | Floating():  # nothing to limit
+                continue
+            case _:
+                assert_never(joint)
         lower, upper = resolve.interval(joint.limits, known)
         for word, limit, sign in (("lower", lower, 1.0), ("upper", upper, -1.0)):
             if math.isfinite(limit):

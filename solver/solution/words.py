@@ -7,7 +7,7 @@ import numpy as np
 from schemas import resolve
 from schemas.corners import corners
 from schemas.problem import Problem
-from schemas.remarks import folding, untied
+from schemas.remarks import doubtful, folding, untied
 from schemas.results import Certificate, PhaseResult, Residual, SolutionStatus
 from solver.meshes import SolvedMesh
 from solver.model.build import START
@@ -150,4 +150,5 @@ def warnings(problem: Problem, redundancy: Redundancy) -> list[str]:
         f"'{name}' depends on other equalities and may contradict them."
         for name in redundancy.conflicts
     ]
-    return [*lines, *untied(problem), *folding(problem), *corners(problem)]
+    found = [untied(problem), folding(problem), corners(problem), doubtful(problem)]
+    return [*lines, *(line for one in found for line in one)]

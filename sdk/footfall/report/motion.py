@@ -194,6 +194,9 @@ def _extents(clip: Clip) -> Iterator[Floats]:
     for joint in clip.scene["joints"].values():
         for at in (joint["at"], joint["end"] or joint["at"]):
             yield clip.place(joint["body"], at)
+    for ends in clip.springs:
+        for carrier, spot in ends:
+            yield clip.place(carrier, spot)
     round_ones = [*clip.scene["contacts"].values(), *clip.scene["shapes"].values()]
     for look in round_ones:
         reach = max(look.get("axes") or [look["radius"]])

@@ -213,3 +213,21 @@ def test_waiting_simulations_count_into_the_share(store: Store) -> None:
         assert refused.status_code == 429
         assert "retry-after" in refused.headers
         assert store.jobs.live()[0].status is JobStatus.QUEUED
+
+
+def test_a_document_of_the_other_kind_is_sent_to_its_place(client: AppClient) -> None:
+    reply = client.post("/v1/jobs", json=THROW)
+    assert reply.status_code == 422
+    (found,) = reply.json()["errors"]
+    assert "POST /v1/simulations" in found["hint"]
+
+
+def test_what_is_hardly_meant_is_a_warning(client: AppClient) -> None:
+    system = {
+        "kind": "mechanism",
+        "bodies": {"rod": {"mass": 1, "inertia": 0.01, "com": [0, -0.5]}},
+        "joints": {"pivot": {"kind": "revolute", "child": "rod", "limits": [-90, 90]}},
+    }
+    told = post(client, {"system": system, "duration": 1}, params={"validate_only": "true"})
+    (warning,) = told.json()["warnings"]
+    assert warning.startswith("/system/joints/pivot/limits: an angle of 90 rad")

@@ -160,12 +160,26 @@ REFUSED = {
         "surfaces/ground/height",
         "vertical step at x = 3",
     ),
+    "a pole": ("surfaces/ground/height", "1/x", "surfaces/ground/height", "end near x = 0"),
+    "a corner of three": (
+        "bodies/thigh/outline",
+        [[0, 0], [0, 0, 0]],
+        "bodies/thigh/outline/1",
+        "x and y, got a list of 3",
+    ),
+    "a corner of none": ("bodies/thigh/outline", [[]], "bodies/thigh/outline/0", "a list of 0"),
+    "a body called ground": ("bodies/ground", LIMB, "bodies/ground", "reserved"),
     "a height over time": ("surfaces/ground/height", "0.1*t", "surfaces/ground/height", "'t'"),
     "a mass over time": ("bodies/thigh/mass", "1 + t", "bodies/thigh/mass", "unknown name 't'"),
     "a place over coordinates": ("joints/knee/at/1", "-hip", "joints/knee/at/1", "'hip'"),
     "a force of jerk": ("forces/push/value", "ddd(hip)", "forces/push/value", "ddd(hip)"),
     "an unknown name": ("forces/push/value", "thig.x", "forces/push/value", "unknown name"),
-    "one place": ("loops/pin", {"between": [{"body": "ball"}]}, "loops/pin/between", "at least 2"),
+    "one place": (
+        "loops/pin",
+        {"between": [{"body": "ball"}]},
+        "loops/pin/between",
+        "2 entries or more",
+    ),
     "a loop of one body": (
         "loops/pin",
         {"between": [{"body": "ball"}, {"body": "ball", "at": [1, 0]}]},
@@ -196,7 +210,12 @@ def test_it_is_refused_at_its_place(what: str) -> None:
         ("motors/hip/joint", "hips", "did you mean 'hip'?"),
         ("joints/again", {"kind": "revolute", "parent": "trunk", "child": "shank"}, "'loops'"),
         ("joints/free", None, '{"kind": "floating", "child": "ball"}'),
-        ("surfaces/ground/height", "sign(x)", "tanh"),
+        ("surfaces/ground/height", "0.1*sign(x - 2)", "such as 0.1*tanh((x - 2)/0.01),"),
+        ("surfaces/ground/height", "0.3*x/abs(x)", "such as 0.3*tanh(x/0.01),"),
+        ("surfaces/ground/height", "1/(x - 3)", "away from 0"),
+        ("surfaces/ground/height", "t*x", "the ground does not move"),
+        ("surfaces/ground/height", "hip", "the ground does not move"),
+        ("bodies/thigh/mass", "1 kg", "units are SI and left out: write 1;"),
         ("forces/push/value", "tip.xx", "did you mean 'tip.x'?"),
         ("mode", {"toes": "sticking"}, "did you mean 'toe'?"),
         ("mode", {"toe": "stuck"}, "write 'sticking'"),
@@ -211,6 +230,50 @@ def test_it_is_refused_at_its_place(what: str) -> None:
 )
 def test_the_mend_is_told(path: str, value: Any, mend: str) -> None:
     assert any(mend in issue.hint for issue in refused(changed(path, value)))
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "place"),
+    [
+        ("joints/hip/parent", "trnk", "joints/hip/parent"),
+        ("joints/hip/child", "thih", "joints/hip/child"),
+        ("joints/hip/parent", "shank", "joints/hip/parent"),
+        ("joints/free", None, "bodies/ball"),
+        ("bodies/ground", LIMB, "bodies/ground"),
+    ],
+)
+def test_of_bodies_that_do_not_hang_together_the_cause_alone_is_named(
+    path: str, value: Any, place: str
+) -> None:
+    given = changed(path, value)
+    given["phases"][0] |= {
+        "initial": {"hip": 0, "d(knee)": 0, "ball.x": 0},
+        "bounds": {"hip": [0, 1], "tip.x": [0, 1]},
+    }
+    (issue,) = refused(given)
+    assert issue.pointer == f"/phases/0/system/{place}"
+
+
+def test_angles_that_look_like_degrees_are_remarked_on() -> None:
+    given = changed("joints/hip/limits", [-90, "pi"])
+    given["phases"][0] |= {
+        "initial": {"hip": 45, "ball.angle": 30, "rail": 100, "knee": -12},
+        "bounds": {"knee": [-60, 0], "thigh.angle": [None, "90*pi/180"]},
+    }
+    told = [text for text in remarks(read_problem(given)) if "looks like degrees" in text]
+    assert [text.partition(":")[0] for text in told] == [
+        "/phases/0/system/joints/hip/limits",
+        "/phases/0/bounds/knee",
+        "/phases/0/initial/hip",
+        "/phases/0/initial/ball.angle",
+    ]
+
+
+def test_motors_that_share_a_joint_are_remarked_on() -> None:
+    given = changed("motors/second", {"joint": "hip"})
+    (told,) = remarks(read_problem(given))
+    assert told.startswith("/phases/0/system/motors/second/joint: 'hip' drives")
+    assert not list(remarks(read_problem(document())))
 
 
 def test_every_mechanism_of_several_phases_is_checked() -> None:

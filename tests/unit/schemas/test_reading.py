@@ -139,7 +139,7 @@ def test_data_that_no_json_has() -> None:
         ("guess time", [0, "x", 2], "/guess/time/1", "expected a number", ""),
         ("refinement", 3, "/refinement", "expected an object", ""),
         ("refinement tolerance", None, "/refinement/tolerance", "expected a number", ""),
-        ("phases", [], "/phases", "at least 1 item", ""),
+        ("phases", [], "/phases", "one entry or more, got none", ""),
         ("phases", {}, "/phases", "expected a list", ""),
         (f"{PHASE} time", {}, "/phases/0/time", "give 'final', 'duration' or both", ""),
         (f"{PHASE} name", "a b", "/phases/0/name", "'a b' is not a name", "a letter"),

@@ -6,7 +6,8 @@ from typing import Any
 import pytest
 
 from schemas.errors import BadProblem, Issue
-from schemas.reading import spec_sha256
+from schemas.reading import read_problem, spec_sha256
+from schemas.remarks import simulated_remarks
 from schemas.simulations import Simulation, read_simulation
 
 BASE: dict[str, Any] = {
@@ -19,6 +20,13 @@ BASE: dict[str, Any] = {
     },
     "initial": {"x": 1},
     "duration": 1,
+}
+
+
+PENDULUM: dict[str, Any] = {
+    "kind": "mechanism",
+    "bodies": {"rod": {"mass": 1, "inertia": 0.01, "com": [0, -0.5]}},
+    "joints": {"pivot": {"kind": "revolute", "child": "rod"}},
 }
 
 
@@ -170,6 +178,59 @@ def test_what_is_no_json_object_is_refused() -> None:
     for data in ("[]", "{", '{"duration": NaN}'):
         with pytest.raises(BadProblem):
             read_simulation(data)
+
+
+def test_a_document_of_the_other_kind_is_sent_to_its_place() -> None:
+    problem = {"phases": [{"system": BASE["system"], "time": {"final": 1}}]}
+    with pytest.raises(BadProblem) as caught:
+        read_simulation(problem)
+    (issue,) = caught.value.issues
+    assert issue.message == "this is a problem, not a simulation"
+    assert "POST /v1/jobs" in issue.hint
+    assert "footfall solve" in issue.hint
+    with pytest.raises(BadProblem) as caught:
+        read_problem(BASE)
+    (issue,) = caught.value.issues
+    assert issue.message == "this is a simulation, not a problem"
+    assert "POST /v1/simulations" in issue.hint
+    assert "footfall simulate" in issue.hint
+
+
+def test_a_problem_without_its_phase_is_no_simulation() -> None:
+    with pytest.raises(BadProblem) as caught:
+        read_problem({"system": BASE["system"], "time": {"final": 1}})
+    assert any(issue.pointer == "/phases" for issue in caught.value.issues)
+
+
+def test_a_rate_is_written_as_a_derivative() -> None:
+    (issue,) = issues(system=PENDULUM, initial={"pivot_dot": 1})
+    assert issue.pointer == "/initial/pivot_dot"
+    assert issue.hint == "write d(pivot)"
+
+
+@pytest.mark.parametrize(
+    ("change", "place"),
+    [({"parent": "grund"}, "parent"), ({"child": "rdo"}, "child"), ({"parent": "rod"}, "parent")],
+)
+def test_of_a_mechanism_that_does_not_hang_together_the_cause_alone_is_named(
+    change: dict[str, Any], place: str
+) -> None:
+    joints = {"pivot": {**PENDULUM["joints"]["pivot"], **change}}
+    (issue,) = issues(system={**PENDULUM, "joints": joints}, initial={"pivot": 1})
+    assert issue.pointer == f"/system/joints/pivot/{place}"
+
+
+def test_what_is_hardly_meant_is_remarked_on() -> None:
+    given = {
+        "system": PENDULUM,
+        "initial": {"pivot": 45},
+        "duration": 0.1,
+        "method": {"kind": "time_stepping", "step": 0.9},
+    }
+    degrees, step = simulated_remarks(read_simulation(given))
+    assert degrees.startswith("/initial/pivot: an angle of 45 rad")
+    assert step.startswith("/method/step: one step of 0.9 s is longer than the duration")
+    assert not list(simulated_remarks(read_simulation({**given, "initial": {}, "duration": 2})))
 
 
 def test_very_many_expressions_are_all_looked_at() -> None:

@@ -116,6 +116,15 @@ class TestMotion:
         assert wide.high >= view.high
         assert 0.2 <= wide.height / wide.width <= 0.62 + 1e-12
 
+    def test_both_ends_of_a_spring_are_in_view(self) -> None:
+        far = [{"body": "ground", "at": [0, 4]}, {"body": "rod", "at": [0, 0]}]
+        given = throw(rolling())
+        given["phases"][0]["frames"]["scene"]["springs"] = {"far": far}
+        motion = motion_of(given)
+        assert motion is not None
+        assert motion.view.high > 4
+        assert moving().view.high < 4
+
     def test_who_travels_far_is_followed(self) -> None:
         assert moving().follow is None
         frames = rolling()

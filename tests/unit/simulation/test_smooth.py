@@ -342,6 +342,5 @@ def test_what_is_held_starts_in_its_place() -> None:
     assert [issue.message for issue in caught.value.issues] == [
         "the gap of contact 'foot', m, is 0.1 at the start",
         "the slip of contact 'foot', m/s, is 0.1 at the start",
-        "the opening of loop 'pin', m, is 0.6 at the start",
-        "the opening of loop 'pin', m/s, is 0.1 at the start",
+        "the loop 'pin', of 'ground' and 'stick', is open by 0.6 m at the start",
     ]

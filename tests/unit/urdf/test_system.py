@@ -48,28 +48,33 @@ def test_200_000_nested_tags_are_told_like_any_other() -> None:
 
 
 @pytest.mark.parametrize(
-    ("more", "reason"),
+    ("more", "place", "reason"),
     [
-        ({"motors": ["swung"]}, "the motor 'swung'"),
-        ({"motors": ["follow"]}, "mimics nobody"),
-        ({"motors": ["swing", "swing"]}, "named twice"),
-        ({"contacts": {"foot": {"link": "floor"}}}, "the link of 'foot'"),
-        ({"contacts": {"led": {"link": "led"}}}, "'led' is the name of a link"),
-        ({"mode": {"foot": "sticking"}}, "'foot' in 'mode'"),
+        ({"motors": ["swing", "swung"]}, "/motors/1", "the motor 'swung'"),
+        ({"motors": ["follow"]}, "/motors/0", "mimics nobody"),
+        ({"motors": ["swing", "swing"]}, "", "named twice"),
+        ({"contacts": {"foot": {"link": "floor"}}}, "/contacts/foot/link", "the link of 'foot'"),
+        ({"contacts": {"led": {"link": "led"}}}, "", "'led' is the name of a link"),
+        ({"mode": {"foot": "sticking"}}, "/mode/foot", "'foot' in 'mode'"),
         (
             {
                 "base": "floating",
                 "contacts": {"heel": {"link": "swung"}, "toe": {"link": "welded"}},
                 "mode": {"heel": "sticking", "toe": "sticking"},
             },
+            "",
             "'heel' and 'toe' hold the same",
         ),
-        ({"contacts": {"foot": {"link": "root"}}, "mode": {"foot": "sticking"}}, "does not move"),
+        (
+            {"contacts": {"foot": {"link": "root"}}, "mode": {"foot": "sticking"}},
+            "",
+            "does not move",
+        ),
     ],
 )
-def test_what_fields_name_must_be_there(more: dict[str, Any], reason: str) -> None:
+def test_what_fields_name_must_be_there(more: dict[str, Any], place: str, reason: str) -> None:
     issue = only(problem(TREE, **more))
-    assert issue.pointer == "/phases/0/system"
+    assert issue.pointer == f"/phases/0/system{place}"
     assert reason in issue.message
 
 
