@@ -11,7 +11,7 @@ from numpy.polynomial import chebyshev
 from footfall.curves import Curves
 from schemas.limits import MODEL_LIMITS
 from schemas.results import CurveGroup, Group, PhaseResult, finite
-from schemas.simulated import Energy, ModeSequence
+from schemas.simulated import Energy, ModeSequence, SimulationStatus
 from solver.numeric.tape import Array
 from solver.simulation.exchange import changing
 from solver.simulation.experiment import Experiment, Outcome, Stretch
@@ -22,6 +22,9 @@ from solver.simulation.spatial_instant import SpatialInstant
 
 MAX_PIECES = MODEL_LIMITS.segments
 """Of the published curves; where there are more steps, each piece holds some of them."""
+
+HURRIED = 500
+"""The same of a motion that was cancelled: it has a second to be told, then it is stopped."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,7 +156,8 @@ def _knots(outcome: Outcome) -> list[float]:
 def thinning(outcome: Outcome) -> int:
     """How many steps one piece of the published curves holds: one, unless there are very many."""
     steps = sum(len(stretch.times) - 1 for stretch in outcome.stretches)
-    return max(1, math.ceil(steps / MAX_PIECES))
+    most = HURRIED if outcome.status is SimulationStatus.CANCELLED else MAX_PIECES
+    return max(1, math.ceil(steps / most))
 
 
 def _curves(experiment: Experiment, outcome: Outcome) -> dict[str, CurveGroup]:

@@ -66,7 +66,7 @@ def client(service: tuple[str, int]) -> Iterator[Client]:
 def slow_problem() -> dict[str, Any]:
     """A solve without an end: no mesh is fine enough."""
     problem = examples.load("cart_pole")
-    problem["method"] = {"kind": "hermite_simpson", "segments": 1500}
+    problem["method"] = {"kind": "trapezoidal", "segments": 1500}
     return problem | {"refinement": {"tolerance": 1e-12, "max_segments": 20_000}}
 
 
@@ -164,7 +164,7 @@ def test_a_dead_worker_is_started_again(service: tuple[str, int], client: Client
 
 def longer_than_a_moment() -> dict[str, Any]:
     problem = examples.load("cart_pole") | {"refinement": None}
-    problem["method"] = {"kind": "hermite_simpson", "segments": 1500}
+    problem["method"] = {"kind": "trapezoidal", "segments": 1500}
     return problem | {"solver": {"tolerance": 1e-12}}
 
 

@@ -55,7 +55,7 @@ ENDLESS = THROW | {
 
 @pytest.fixture
 def url(queue_store: Store) -> Iterator[str]:
-    app = create_app(queue_store, ApiSettings(stop_grace=0.3))
+    app = create_app(queue_store, ApiSettings())
     server = uvicorn.Server(uvicorn.Config(app, log_config=None, timeout_graceful_shutdown=1))
     with socket.create_server(("127.0.0.1", 0)) as listener:
         thread = threading.Thread(target=server.run, args=([listener],))

@@ -118,7 +118,7 @@ def test_the_real_engine_stops_with_its_best_iterate(
     start_worker()
     long = {
         **examples.load("cart_pole"),
-        "method": {"kind": "hermite_simpson", "segments": 1500},
+        "method": {"kind": "trapezoidal", "segments": 1500},
         "refinement": {"tolerance": 1e-12, "max_segments": 20_000},  # no mesh is fine enough
     }
     job_id = submit(queue_store, **long)
