@@ -145,6 +145,8 @@ def test_ctrl_c_on_the_command_cancels_the_job(service: tuple[str, int], tmp_pat
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
+        # Where the tests run in a shell's background, Ctrl-C is ignored and that is inherited.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # noqa: PLW1509
     ) as process:
         assert process.stderr is not None
         while "iteration" not in process.stderr.readline():
