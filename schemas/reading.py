@@ -50,12 +50,12 @@ def read_problem(
         Nothing else is raised, whatever the data; at most `MAX_ISSUES` issues are kept.
     """
     document = read_document(data)
-    _refuse(misdirected(document, "problem"))
+    refuse(misdirected(document, "problem"))
     if inline is not None:
         document = read_inlined(document, inline)
     problem = _checked(document)
-    _refuse(stages.out_of_place(problem))
-    _refuse(_of_stages(problem))
+    refuse(stages.out_of_place(problem))
+    refuse(_of_stages(problem))
     return problem
 
 
@@ -66,7 +66,7 @@ def read_document(data: bytes | str | Document, kind: str = "problem") -> Docume
         document, unreadable = decode(data)
         if unreadable is not None:
             raise BadProblem([unreadable])
-    _refuse(faults(document))
+    refuse(faults(document))
     if not isinstance(document, dict):
         raise BadProblem([Issue("", f"a {kind} is a JSON object, {{...}}")])
     return document
@@ -88,7 +88,7 @@ def read_inlined(document: Document, inline: Callable[[Document], Document]) -> 
     """The document with what it names put in; still not too much of anything. BadProblem."""
     whole = inline(document)
     if whole is not document:
-        _refuse(faults(whole))
+        refuse(faults(whole))
     return whole
 
 
@@ -112,7 +112,7 @@ def _checked(document: dict[str, Any]) -> Problem:
     except ValidationError as error:
         details = error.errors(include_url=False)
         raise BadProblem([issue_of(detail) for detail in details[:MAX_ISSUES]]) from None
-    _refuse(check(problem))
+    refuse(check(problem))
     return problem
 
 
@@ -126,7 +126,8 @@ def _of_stages(problem: Problem) -> Iterator[Issue]:
             return
 
 
-def _refuse(issues: Iterable[Issue]) -> None:
+def refuse(issues: Iterable[Issue]) -> None:
+    """Raise `BadProblem` where there are issues, with the first `MAX_ISSUES` of them."""
     found = list(islice(issues, MAX_ISSUES))
     if found:
         raise BadProblem(found)

@@ -1,13 +1,19 @@
 """Reading a simulation: JSON, then its shape, then its meaning."""
 
-from collections.abc import Callable, Iterable
-from itertools import islice
+from collections.abc import Callable
 
 from pydantic import ValidationError
 
 from schemas.complaints import issue_of
-from schemas.errors import BadProblem, Issue
-from schemas.reading import MAX_ISSUES, Document, misdirected, read_document, read_inlined
+from schemas.errors import BadProblem
+from schemas.reading import (
+    MAX_ISSUES,
+    Document,
+    misdirected,
+    read_document,
+    read_inlined,
+    refuse,
+)
 from schemas.simulations.checks import check
 from schemas.simulations.document import Simulation
 
@@ -30,7 +36,7 @@ def read_simulation(
         With every issue found by the first step that found any; at most `MAX_ISSUES` are kept.
     """
     document = read_document(data, "simulation")
-    _refuse(misdirected(document, "simulation"))
+    refuse(misdirected(document, "simulation"))
     if inline is not None:
         document = read_inlined(document, inline)
     try:
@@ -39,11 +45,5 @@ def read_simulation(
         details = error.errors(include_url=False)
         issues = [issue_of(detail, Simulation) for detail in details[:MAX_ISSUES]]
         raise BadProblem(issues) from None
-    _refuse(check(simulation))
+    refuse(check(simulation))
     return simulation
-
-
-def _refuse(issues: Iterable[Issue]) -> None:
-    found = list(islice(issues, MAX_ISSUES))
-    if found:
-        raise BadProblem(found)
