@@ -39,6 +39,20 @@ class MeshSolved(Strict):
     seconds: float
 
 
+class PassSolved(Strict):
+    """One pass of a homotopy: a contact problem solved at one relaxation on mesh ``mesh``."""
+
+    type: Literal["homotopy"] = "homotopy"
+    mesh: int
+    relaxation: float
+    form: str
+    status: str
+    nlp_iterations: int
+    objective: float | None
+    residual: float | None
+    seconds: float
+
+
 class Advanced(Strict):
     """A simulation has come to ``time`` of ``end``, in s of the motion; ``events`` happened."""
 
@@ -70,8 +84,8 @@ class StateChanged(Strict):
 
 
 Event = Annotated[
-    StageStarted | NlpIteration | MeshSolved | Advanced | PointEnded | StateChanged,
+    StageStarted | NlpIteration | MeshSolved | PassSolved | Advanced | PointEnded | StateChanged,
     Field(discriminator="type"),
 ]
-EngineEvent = StageStarted | NlpIteration | MeshSolved | Advanced
+EngineEvent = StageStarted | NlpIteration | MeshSolved | PassSolved | Advanced
 event_adapter: TypeAdapter[Event] = TypeAdapter(Event)

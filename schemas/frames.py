@@ -41,6 +41,17 @@ class Arrow(Strict):
     fy: Numbers
 
 
+class SpatialArrow(Strict):
+    """The same in space."""
+
+    x: Numbers
+    y: Numbers
+    z: Numbers
+    fx: Numbers
+    fy: Numbers
+    fz: Numbers
+
+
 class Spot(Strict):
     """A place of a body."""
 
@@ -101,5 +112,5 @@ class Frames(Strict):
 
     time: list[float]
     bodies: dict[str, PlanarPoses | SpatialPoses]
-    forces: dict[str, Arrow] = Field(default_factory=dict)
+    forces: dict[str, Arrow | SpatialArrow] = Field(default_factory=dict)
     scene: Scene

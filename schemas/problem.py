@@ -143,6 +143,12 @@ class Problem(Posted):
         max_length=MODEL_LIMITS.stages,
         description="Merge patches on the problem, each solved from the last one's solution.",
     )
+    halvings: int = Field(
+        default=0,
+        ge=0,
+        le=6,
+        description="How often the way to a stage that fails is halved: numbers in between.",
+    )
     multistart: int = Field(default=1, ge=1, le=MODEL_LIMITS.multistart, description="Guesses.")
     solver: SolverSettings = Field(default_factory=SolverSettings)
     limits: Limits = Field(default_factory=Limits)

@@ -11,6 +11,7 @@ from schemas.mechanisms import Mechanism
 from schemas.mechanisms.four_bars import change_points
 from schemas.problem import Problem
 from schemas.simulations.document import Simulation, TimeStepping
+from schemas.stepping import stepping
 from schemas.suspicions import suspicions
 from schemas.urdf import Urdf
 from schemas.values import Bound
@@ -27,6 +28,7 @@ def remarks(problem: Problem) -> Iterator[str]:
     yield from folding(problem)
     yield from corners(problem)
     yield from doubtful(problem)
+    yield from stepping(problem)
     for index, phase in enumerate(problem.phases):
         if isinstance(phase.system, Urdf):
             for remark in phase.system.tree.remarks:

@@ -199,16 +199,50 @@ class ModeSpan(Strict):
 
 
 class ModeSequence(Strict):
-    """When which contacts touch, in order of time.
+    """When which contacts touch, in order of time; under contact-implicit methods limits, too.
 
-    ``distinct`` counts the different sets of touching contacts among the modes; ``possible`` is
-    how many there are, 2 to the number of contacts.
+    ``distinct`` counts the different modes, ``possible`` is how many there are. Under hybrid
+    methods modes differ by what touches: 2 to the number of contacts. Under contact-implicit ones
+    also by how: a contact is free, sticking, sliding_left or sliding_right (in space: sliding;
+    frictionless where it has none), a limit ``limit.JOINT`` free, lower or upper; these multiply.
     """
 
     contacts: list[str]
     modes: list[ModeSpan]
     distinct: int
     possible: int
+
+
+class HomotopyPass(Strict):
+    """One solve of a relaxed contact problem. ``residual`` is the largest product of a pair."""
+
+    relaxation: float
+    form: str
+    status: str
+    nlp_iterations: int
+    objective: float | None
+    residual: float | None
+    seconds: float
+
+
+class Complementarity(Strict):
+    """How contacts were brought to strict complementarity on the mesh that is published.
+
+    ``residual``, in SI units, is recomputed from states and forces: the largest
+    ``min(a, b)`` of a pair, m, m/s or N over the weight. ``stationarity`` is the kind of
+    stationary point that the multipliers of the polished solve prove: strong, M, C, weak;
+    null where there was no polish. ``pinned`` pairs had their gap fixed by the ends and took the
+    inequality. ``dissipation`` is the energy that steps outside of impacts lose by the method, over
+    the actuators' work; null where these do none.
+    """
+
+    form: str
+    passes: list[HomotopyPass]
+    polished: bool
+    residual: float | None
+    stationarity: str | None = None
+    pinned: int = 0
+    dissipation: float | None = None
 
 
 class Solution(Strict):
@@ -226,6 +260,8 @@ class Solution(Strict):
     stages: list[StageReport] = Field(default_factory=list)
     minima: list[Minimum] = Field(default_factory=list)
     mode_sequence: ModeSequence | None = None
+    guessed_sequence: ModeSequence | None = None
+    complementarity: Complementarity | None = None
     mesh_refinement: MeshRefinement
     certificate: Certificate
     solver: SolverReport

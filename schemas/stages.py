@@ -8,13 +8,15 @@ names. And ``refinement: null`` is a value, one mesh, and no removal.
 from collections.abc import Iterator
 from typing import Any
 
+from pydantic import ValidationError
+
 from schemas.errors import Issue
 from schemas.expressions.errors import quoted
 from schemas.pointers import Part, parts_of, pointer
 from schemas.problem import Problem
 from schemas.suggest import did_you_mean
 
-_OF_THE_WHOLE = ("stages", "multistart", "limits", "known")
+_OF_THE_WHOLE = ("stages", "halvings", "multistart", "limits", "known")
 """Fields that say something about all stages together."""
 
 
@@ -38,6 +40,34 @@ def stage_document(problem: Problem, index: int) -> dict[str, Any]:
         if "refinement" in patch and patch["refinement"] is None:
             document["refinement"] = None
     return document
+
+
+def halfway(before: Problem, after: Problem) -> Problem | None:
+    """The later one of two stages' problems with its numbers halfway from the earlier one's.
+
+    None where that is no good problem, or no number differs.
+    """
+    document = _between(before.model_dump(mode="json"), after.model_dump(mode="json"))
+    try:
+        between = Problem.model_validate(document)
+    except ValidationError:
+        return None
+    return None if between == after else between
+
+
+def _between(before: Any, after: Any) -> Any:
+    if isinstance(before, dict) and isinstance(after, dict):
+        return {name: _between(before.get(name, value), value) for name, value in after.items()}
+    if isinstance(before, list) and isinstance(after, list) and len(before) == len(after):
+        return [_between(*pair) for pair in zip(before, after, strict=True)]
+    if not (_is_number(before) and _is_number(after)):
+        return after
+    whole = isinstance(before, int) and isinstance(after, int)
+    return (before + after) // 2 if whole else (before + after) / 2
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 def merged(target: Any, patch: Any) -> Any:

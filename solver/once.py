@@ -4,20 +4,14 @@ import time
 from collections.abc import Callable, Sequence
 
 from schemas.problem import Problem
-from schemas.reading import spec_sha256
 from schemas.results import Certificate, Solution, finite
 from solver.certificate import CHECKS, JUDGED, certify
-from solver.hybrid import Expansion, as_posted, expand, mode_guesses, mode_sequence
-from solver.lowering import smoothed
-from solver.mechanics import limited
+from solver.hybrid import as_posted
 from solver.meshes import SolvedMesh, solve_meshes, solve_switched
-from solver.model import Model
-from solver.poses import loosened
-from solver.prepare import prepare
+from solver.posing import Posing
 from solver.run import Run
 from solver.solution.choose import choose
 from solver.solution.conclude import conclude, snapshot
-from solver.trajectory import Trajectory
 
 GRACE = 10.0
 """Seconds for the certificate, where the limit of the solve leaves less."""
@@ -36,40 +30,27 @@ def solve_once(problem: Problem, run: Run, listen: Listen) -> Solution:
         If the NLP solver itself fails.
     """
     with run.stage("build"):
-        expansion = expand(problem)
-    smooth = loosened(limited(smoothed(expansion.problem)))
-
-    def guess(model: Model) -> list[Trajectory]:
-        return mode_guesses(expansion, problem, model)
+        posing = Posing.of(problem)
 
     def publish(so_far: Sequence[SolvedMesh]) -> None:
-        listen(_told(expansion, problem, snapshot(expansion.problem, so_far, run)))
+        guesses = so_far[0].setting.guesses
+        listen(posing.told(snapshot(posing.shown, so_far, run), guesses))
 
-    with as_posted(problem, expansion):
-        solved = _solved(smooth, guess, run, publish)
+    with as_posted(problem, posing.expansion):
+        solved = _solved(posing, run, publish)
     with run.stage("certify"):
-        certificate = _certificate(smooth, solved, run)
-    return _told(expansion, problem, conclude(expansion.problem, solved, certificate, run))
-
-
-def _told(expansion: Expansion, problem: Problem, solution: Solution) -> Solution:
-    """What the user learns of the modes; the hash is that of what was posted."""
-    if expansion.problem is problem:
-        return solution
-    digest = solution.reproduce.model_copy(update={"spec_sha256": spec_sha256(problem)})
-    modes = mode_sequence(expansion, solution.phases)
-    return solution.model_copy(update={"reproduce": digest, "mode_sequence": modes})
+        certificate = _certificate(posing.judged, solved, run)
+    solution = conclude(posing.shown, solved, certificate, run)
+    return posing.told(solution, solved[0].setting.guesses)
 
 
 def _solved(
-    problem: Problem,
-    guess: Callable[[Model], list[Trajectory]],
-    run: Run,
-    publish: Callable[[Sequence[SolvedMesh]], None],
+    posing: Posing, run: Run, publish: Callable[[Sequence[SolvedMesh]], None]
 ) -> list[SolvedMesh]:
     """All meshes, as of the phases and modes of the problem."""
+    problem = posing.solved
     with run.stage("build"):
-        model, setting = prepare(problem, guess)
+        model, setting = posing.prepared()
     switches = problem.refinement is not None and problem.refinement.switches
     meshes = solve_switched if switches else solve_meshes
     return meshes(problem, model, setting, run, publish, warm=False)

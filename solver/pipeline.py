@@ -8,7 +8,7 @@ from schemas.events import EngineEvent
 from schemas.problem import Problem
 from schemas.results import Solution
 from solver.backends.memory import memory_told
-from solver.campaign import solve_guesses, solve_stages
+from solver.campaign import solve_guesses, solve_polished, solve_stages
 from solver.once import solve_once
 from solver.run import Run
 
@@ -62,8 +62,11 @@ def solve(
     def once(problem: Problem, run: Run) -> Solution:
         return solve_once(problem, run, on_snapshot)
 
+    def polished(problem: Problem, run: Run) -> Solution:
+        return solve_polished(problem, once, run)
+
     def staged(problem: Problem, run: Run) -> Solution:
-        return solve_stages(problem, once, run)
+        return solve_stages(problem, polished, run)
 
     with memory_told():
         return solve_guesses(problem, staged, run)

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from schemas.errors import InvalidModel
 from schemas.problem import Problem
 from solver.model import Model, build_model, read_static
-from solver.poses import impossible
+from solver.poses import impossible, posed
 from solver.trajectory import Trajectory, guessed_statics, initial_guesses
 from solver.transcribe import Setting
 from solver.transcriptions import first_meshes, make_transcriptions
@@ -26,7 +26,7 @@ def prepare(
     transcriptions = make_transcriptions(problem)
     _check_mechanisms(problem)
     model = build_model(problem, [one.native for one in transcriptions])
-    own = [phase.guess or problem.guess for phase in problem.phases]
+    own = [phase.guess or problem.guess for phase in posed(problem).problem.phases]
     setting = Setting(
         transcriptions,
         first_meshes(problem, transcriptions),

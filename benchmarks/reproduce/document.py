@@ -17,8 +17,6 @@ should match does not. `python -m benchmarks.reproduce --only 8.8` does one sect
   solving, without the certificate.
 - **refined**: the same method on meshes refined until the error is small. **J\\***: the optimum of
   the continuous problem, in closed form or from several high-order methods.
-
-The walking robot of 003, section 7.9, follows with mechanisms.
 """
 
 _COLUMNS = ("case", "printed", "ours", "refined", "J*", "segments", "error", "printed s", "our s")

@@ -4,6 +4,7 @@ import copy
 import time
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
 from functools import partial
 from multiprocessing import get_context
 from typing import Any
@@ -102,6 +103,29 @@ def run_from(example: str, seed: int) -> tuple[Measured, bool]:
     return _measured(solution), certified and solution.status is SolutionStatus.CONVERGED
 
 
+def _audited(row: Row) -> Measured:
+    """The example as it is, but for the row's changes: what its contacts did, and the audit."""
+    solution = solve(read_problem(examples.load(row.example) | dict(row.changes)))
+    found = _measured(solution)
+    if solution.status is SolutionStatus.CONVERGED:
+        return replace(found, note=_told(solution))
+    failed = [row.name for row in solution.certificate.checks if row.judged and not row.passed]
+    words = f"{solution.status.value.replace('_', ' ')}: {', '.join(failed) or 'not judged'}"
+    return replace(found, status=words, note=words)
+
+
+def _told(solution: Solution) -> str:
+    modes, told = solution.mode_sequence, solution.complementarity
+    words = ["certified"]
+    if modes is not None:
+        words.append(f"{len(modes.modes)} modes, {modes.distinct} of {modes.possible} possible")
+    if told is not None and told.dissipation is not None:
+        words.append(f"steps lose {told.dissipation:.0%} of the actuators' work")
+    if told is not None and told.residual is not None:
+        words.append(f"complementarity {told.residual:.0e}")
+    return ", ".join(words)
+
+
 def _sums(row: Row) -> Measured:
     """The seed's own transcription: sums over ten nodes."""
     began = time.perf_counter()
@@ -111,6 +135,7 @@ def _sums(row: Row) -> Measured:
 
 _KINDS: dict[str, Callable[[Row], Measured]] = {
     "solve": _solve,
+    "audit": _audited,
     "random": _random,
     "sums": _sums,
 }

@@ -37,7 +37,8 @@ class Row:
     why
         Why printed value and ours differ, where they do.
     kind
-        How the row is measured: a solve, whole runs from random guesses, or the seed's sums.
+        How the row is measured: a solve, the example as it is with its audit, whole runs from
+        random guesses, or the seed's sums.
     """
 
     name: str
@@ -51,7 +52,7 @@ class Row:
     refined: Patch = field(default_factory=dict)
     meets: bool = True
     why: str = ""
-    kind: Literal["solve", "random", "sums"] = "solve"
+    kind: Literal["solve", "audit", "random", "sums"] = "solve"
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator
 from schemas.checks import (
     chains,
     closed_forms,
+    contact_implicit,
     contacts,
     drives,
     equations,
@@ -46,6 +47,7 @@ CHECKS: tuple[Check, ...] = (
     times.check,
     methods.check,
     schedules.check,
+    contact_implicit.check,
     guesses.check,
     nonsmooth.check,
 )

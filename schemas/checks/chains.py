@@ -47,13 +47,13 @@ class Where(NamedTuple):
 
 def check(problem: Problem) -> Iterator[Issue]:
     """Chains that lead back to where they start, and those that end too high."""
-    written = _written(problem)
+    names = written(problem)
     for index, phase in enumerate(problem.phases):
         circles = list(_circles(phase.system, ("phases", index, "system")))
         yield from circles
         if not circles:
             method = phase.method or problem.method
-            yield from _too_high(phase.system, written[index], native=isinstance(method, DirCol5i))
+            yield from _too_high(phase.system, names[index], native=isinstance(method, DirCol5i))
 
 
 class Chains:
@@ -231,7 +231,7 @@ def _without_end(name: str) -> str:
     return rest if f"{head}." in _ENDS else name
 
 
-def _written(problem: Problem) -> list[dict[Node, Where]]:
+def written(problem: Problem) -> list[dict[Node, Where]]:
     """For each phase the names that are written of it, each where it is first."""
     found: list[dict[Node, Where]] = [{} for _ in problem.phases]
     phases = {phase.name: index for index, phase in enumerate(problem.phases)}

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from schemas.checks.constants import Constants
+from schemas.checks.constants import Constants, Interval
 from schemas.checks.masses import Numbers
 from schemas.errors import Issue
 from schemas.mechanisms import (
@@ -105,20 +105,42 @@ def _limits(problem: Problem, phase: Phase, system: Mechanism, index: int) -> It
         if isinstance(joint, Revolute | Prismatic) and joint.limits is not None:
             place = (*root, "system", "joints", name, "limits")
             interval = constants.interval(joint.limits, place)
-            bound = phase.bounds.get(name)
-            given = None if bound is None else constants.interval(bound, (*root, "bounds", name))
+            fields = ("bounds", "initial", "final")
+            bounds = {field: getattr(phase, field).get(name) for field in fields}
+            given = {
+                field: constants.interval(bound, (*root, field, name))
+                for field, bound in bounds.items()
+                if bound is not None
+            }
             constants.issues = [one for one in constants.issues if "/system/" in one.pointer]
             yield from constants.drain()
-            if interval and given and (given[0] > interval[1] or given[1] < interval[0]):
-                yield Issue(
-                    pointer(*root, "bounds", name),
-                    f"no value of '{name}' keeps both these bounds and the joint's own limits",
-                    "widen one of them; both hold",
-                )
+            for field, pair in given.items():
+                if interval and pair and (pair[0] > interval[1] or pair[1] < interval[0]):
+                    yield _beyond(name, field, pair, interval, root)
     for parts, limit in _pairs(system):
         if parts[0] == "motors":
             constants.interval(limit, (*root, "system", *parts))
     yield from constants.drain()
+
+
+def _beyond(
+    name: str, field: str, given: Interval, limits: Interval, root: tuple[Part, ...]
+) -> Issue:
+    """What bounds or ends say of a joint lies outside of its limits."""
+    if field == "bounds":
+        return Issue(
+            pointer(*root, field, name),
+            f"no value of '{name}' keeps both these bounds and the joint's own limits",
+            "widen one of them; both hold",
+        )
+    near, side, by = given[0], limits[1], given[0] - limits[1]
+    if by < 0:
+        near, side, by = given[1], limits[0], limits[0] - given[1]
+    return Issue(
+        pointer(*root, field, name),
+        f"{near:.6g} is {by:.4g} beyond the limit of the joint '{name}', {side:.6g}",
+        f"the nearest is {side:.6g} (angles are in rad); or widen the joint's 'limits'",
+    )
 
 
 def _pairs(system: Mechanism) -> Iterator[tuple[tuple[Part, ...], Bound]]:

@@ -7,9 +7,17 @@ from math import isclose
 from schemas.checks.constants import Constants
 from schemas.checks.limits import is_variable, not_a_variable
 from schemas.checks.places import variables
+from schemas.checks.poses import poses
 from schemas.errors import Issue
 from schemas.expressions.tokens import MAX_CONSTANT
-from schemas.guesses import ConstantGuess, Guess, PointsGuess, SolutionGuess
+from schemas.guesses import (
+    ConstantGuess,
+    Guess,
+    PointsGuess,
+    PosesGuess,
+    RandomGuess,
+    SolutionGuess,
+)
 from schemas.phases import Phase
 from schemas.pointers import Part, pointer
 from schemas.problem import Problem
@@ -32,6 +40,10 @@ def check(problem: Problem) -> Iterator[Issue]:
 
 def _guess(guess: Guess, phases: _Numbered, root: tuple[Part, ...]) -> Iterator[Issue]:
     place = (*root, "guess")
+    if isinstance(guess, RandomGuess) and guess.about is not None:
+        guess, place = guess.about, (*place, "about")
+    if isinstance(guess, PosesGuess):
+        yield from poses(guess, phases, place)
     if isinstance(guess, PointsGuess):
         yield from _points(guess, place)
     if isinstance(guess, SolutionGuess):

@@ -3,6 +3,7 @@
 A derivative is a name like any other: the tokens of ``final.dd(q)`` are one `Name`.
 """
 
+from functools import lru_cache
 from typing import NamedTuple
 
 from schemas.expressions.errors import ExpressionError, quoted
@@ -24,6 +25,7 @@ class Parts(NamedTuple):
     base: str
 
 
+@lru_cache(maxsize=10_000)  # the same few names, thousands of times for one problem
 def split(name: str) -> Parts:
     """Take a name apart; what is no derivative has order 0."""
     head, _, argument = name.partition("(")
@@ -33,12 +35,14 @@ def split(name: str) -> Parts:
     return Parts(prefix + dot, 0, last)
 
 
+@lru_cache(maxsize=10_000)
 def stem(name: str) -> tuple[int, str]:
     """The order of a derivative and what it is one of, dots and all: (1, "torso.x")."""
     prefix, order, base = split(name)
     return order, prefix + base
 
 
+@lru_cache(maxsize=10_000)
 def derivative(name: str, order: int = 1) -> str:
     """The name of a derivative of ``name``, which may be a derivative: ``dd(q)`` of ``d(q)``."""
     prefix, already, base = split(name)

@@ -8,6 +8,7 @@ from pydantic import Field
 
 from schemas.base import Identifier, Posted, Series
 from schemas.expressions import Expression, derivative
+from schemas.expressions.names import MAX_ORDER
 from schemas.limits import MODEL_LIMITS
 from schemas.mechanisms.contacts import Contact, Mode, Pair, Shape, Surface
 from schemas.mechanisms.forces import Force, Motor, Spring, Torque
@@ -133,6 +134,12 @@ class Mechanism(Posted):
     def defined(self) -> dict[str, int]:
         """Names that the mechanism defines of itself -> the highest order of their derivatives."""
         return names_of(self)
+
+    @property
+    def positions(self) -> set[str]:
+        """The names that a pose decides: coordinates, places, angles, gaps, lengths."""
+        decided = {name for name, order in self.defined.items() if order == MAX_ORDER}
+        return {*self.coordinates, *decided}
 
     def constants(self) -> Iterator[tuple[tuple[Part, ...], Expression]]:
         """Everything that does not change over time: masses, places, stiffnesses; and heights."""

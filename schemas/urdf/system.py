@@ -252,9 +252,18 @@ def motor_torque(joint: str) -> Series:
     return f"motor.{joint}.torque"
 
 
-def contact_forces(name: str, mode: Mode) -> tuple[str, ...]:
-    """The forces on a link at a contact that touches: along z, then where it sticks."""
-    held = {"sticking": "xy", "sticking_x": "x", "sticking_y": "y", "frictionless": ""}[mode]
+def contact_forces(name: str, mode: Mode | Literal["split"]) -> tuple[str, ...]:
+    """The forces on a link at a contact that touches: along z, then where it sticks.
+
+    All of a ``split`` one are given elsewhere (``solver.contact``).
+    """
+    held = {
+        "split": "xy",
+        "sticking": "xy",
+        "sticking_x": "x",
+        "sticking_y": "y",
+        "frictionless": "",
+    }[mode]
     return tuple(f"contact.{name}.{word}" for word in FORCES if word[-1] in (*held, "l"))
 
 

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from footfall.client import Client, Job
     from footfall.curves import Curve, Curves
     from footfall.local import simulate, solve
+    from footfall.modes import ModeSequence
     from footfall.report import render, render_motion, render_svg
     from footfall.result import NodeValues, PhaseResult, Result, SimulationResult
     from footfall.sse import Event
@@ -29,6 +30,7 @@ __all__ = [
     "Curves",
     "Event",
     "Job",
+    "ModeSequence",
     "NodeValues",
     "PhaseResult",
     "Result",
@@ -49,6 +51,7 @@ _HOMES = {
     "Curves": "curves",
     "Event": "sse",
     "Job": "client",
+    "ModeSequence": "modes",
     "NodeValues": "result",
     "PhaseResult": "result",
     "Result": "result",

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from footfall.curves import Curve, Curves, Floats
 from footfall.documents import read_json
 from footfall.errors import BadFile
+from footfall.modes import ModeSequence
 from footfall.simulated import summarize_simulation
 from footfall.summary import summarize
 
@@ -137,6 +138,20 @@ class Result:
         """The meshes of the refinement, the last one that of the result."""
         iterations: list[dict[str, Any]] = self.document["mesh_refinement"]["iterations"]
         return iterations
+
+    @cached_property
+    def mode_sequence(self) -> ModeSequence | None:
+        """Which contacts touched when, and how; None where the method tells no modes."""
+        return self._sequence("mode_sequence")
+
+    @cached_property
+    def guessed_sequence(self) -> ModeSequence | None:
+        """The same of the guess that a contact-implicit solve started from."""
+        return self._sequence("guessed_sequence")
+
+    def _sequence(self, field: str) -> ModeSequence | None:
+        found = self.document.get(field)
+        return ModeSequence.of(found) if found else None
 
     @cached_property
     def phases(self) -> list[PhaseResult]:

@@ -4,7 +4,15 @@ from collections.abc import Mapping, Sequence
 from itertools import islice
 from typing import Any
 
-from footfall.summary import number, plural, table, trajectory_table, words
+from footfall.summary import (
+    mode_count,
+    modes_in_words,
+    number,
+    plural,
+    table,
+    trajectory_table,
+    words,
+)
 
 _MOST_EVENTS = 40
 """Events that are listed on a terminal; an accumulation of impacts has thousands."""
@@ -20,8 +28,8 @@ def simulation_in_words(result: Mapping[str, Any]) -> str:
     ]
     if result["events"]:
         parts.append(("Events\n", event_table(result["events"])))
-    if modes := (result.get("mode_sequence") or {}).get("modes"):
-        parts.append(("Modes\n", mode_table(modes)))
+    if (result.get("mode_sequence") or {}).get("modes"):
+        parts.append(("Modes\n", modes_in_words(result)))
     return "\n\n".join(head + text for head, text in parts)
 
 
@@ -33,9 +41,7 @@ def summarize_simulation(result: Mapping[str, Any]) -> str:
     if result["events"]:
         lines.append(f"  events       {plural(len(result['events']), 'event')}")
     if result.get("mode_sequence"):
-        found = result["mode_sequence"]
-        count = plural(len(found["modes"]), "mode")
-        lines.append(f"  modes        {count}, {found['distinct']} distinct")
+        lines.append(f"  modes        {mode_count(result['mode_sequence'])}")
     if result.get("energy"):
         lines.append(f"  energy       {energy_words(result['energy'])}")
     steps = f", {plural(timing['steps'], 'step')}" if timing["steps"] else ""
@@ -76,22 +82,6 @@ def event_row(event: Mapping[str, Any], show: Any) -> list[str]:
         show(event.get("tangential"), 5),
         f"{show(rates[0], 4)} to {show(rates[1], 4)}" if rates else "",
     ]
-
-
-def mode_table(modes: Sequence[Mapping[str, Any]]) -> str:
-    """One line for each of the first modes."""
-    rows = [
-        [number(mode["start"], 6), number(mode["end"], 6), mode_words(mode)]
-        for mode in islice(modes, _MOST_EVENTS)
-    ]
-    more = len(modes) - len(rows)
-    return table(["from", "to", "contacts"], rows, left=3) + (f"\nand {more} more" if more else "")
-
-
-def mode_words(mode: Mapping[str, Any]) -> str:
-    """Which contacts touch, and how."""
-    touching = [f"{name} {words(how)}" for name, how in mode["contacts"].items()]
-    return ", ".join(touching) or "none touches"
 
 
 def _span(phase: Mapping[str, Any]) -> str:

@@ -7,8 +7,10 @@ from typing import Any
 import numpy as np
 
 from footfall.curves import Curves
+from footfall.modes import ModeSequence
 
 _MOST_COLUMNS = 13  # of a table of numbers that still fits on a wide terminal
+_MOST_MODES = 40  # of a table on a terminal
 
 VERDICTS = {
     "certified": "certified",
@@ -25,8 +27,10 @@ def in_words(result: Mapping[str, Any]) -> str:
             (f"Trajectory of {phase['name']} (t in s)\n", trajectory_table(phase))
             for phase in result["phases"]
         ),
+        *([("Modes\n", modes_in_words(result))] if result.get("mode_sequence") else []),
         *([("Stages\n", stage_table(result))] if result.get("stages") else []),
         *([("Distinct minima\n", minima_table(result))] if result.get("minima") else []),
+        *([("Homotopy\n", pass_table(result))] if result.get("complementarity") else []),
         ("Mesh refinement\n", mesh_table(result)),
         ("Certificate\n", certificate_table(result)),
     ]
@@ -46,7 +50,7 @@ def summarize(result: Mapping[str, Any]) -> str:
         f"  time         {timing['total']:.2f} s",
     ]
     if mesh:
-        error = f"largest error {number(mesh['max_error'], 3)}"
+        error = f"{error_name(result)} {number(mesh['max_error'], 3)}"
         lines.insert(4, f"  mesh         {plural(mesh['segments'], 'segment')}, {error}")
     lines += _parts(result, mesh)
     if solver["residuals"] and result["status"] != "converged":
@@ -55,6 +59,12 @@ def summarize(result: Mapping[str, Any]) -> str:
     lines += [f"  warning: {text}" for text in result.get("warnings", [])]
     lines += [f"  advice: {text}" for text in result.get("advice", [])]
     return "\n".join(lines)
+
+
+def error_name(result: Mapping[str, Any]) -> str:
+    """What the error of a mesh is: of time steps through contact, what they lose by themselves."""
+    stepped = any("impulses" in phase["groups"] for phase in result["phases"])
+    return "lost by steps" if stepped else "largest error"
 
 
 def _solver(solver: Mapping[str, Any]) -> str:
@@ -72,6 +82,10 @@ def _parts(result: Mapping[str, Any], mesh: Mapping[str, Any]) -> list[str]:
         f"  static       {name} = {number(value, 10)}"
         for name, value in result.get("static", {}).items()
     ]
+    if modes := result.get("mode_sequence"):
+        lines.append(f"  modes        {mode_count(modes)}")
+    if pairs := result.get("complementarity"):
+        lines.append(f"  contact      {pairs_in_words(pairs)}")
     if switches := mesh.get("switches"):
         at = ", ".join(number(time, 6) for time in switches)
         lines.append(f"  switches     controls switch at t = {at} s")
@@ -123,6 +137,76 @@ def degree_range(degrees: Sequence[int]) -> str:
         return "-"
     low, high = min(degrees), max(degrees)
     return str(low) if low == high else f"{low} to {high}"
+
+
+def mode_count(sequence: Mapping[str, Any]) -> str:
+    """How many modes there are in a sequence, and how many of them are distinct."""
+    count = plural(len(sequence["modes"]), "mode")
+    return f"{count}, {sequence['distinct']} distinct of {sequence['possible']:,} possible"
+
+
+def modes_in_words(result: Mapping[str, Any]) -> str:
+    """The mode sequence: a line over time for each contact, then its modes; the guess's above."""
+    found = result["mode_sequence"]
+    guessed = result.get("guessed_sequence")
+    parts = [
+        *(
+            ["of the guess", ModeSequence.of(guessed).timeline(), "of the result"]
+            if guessed
+            else []
+        ),
+        ModeSequence.of(found).timeline(),
+        mode_table(found["modes"]),
+    ]
+    return "\n".join(parts)
+
+
+def mode_table(modes: Sequence[Mapping[str, Any]]) -> str:
+    """One line for each of the first modes."""
+    rows = [
+        [number(mode["start"], 6), number(mode["end"], 6), mode_words(mode)]
+        for mode in islice(modes, _MOST_MODES)
+    ]
+    more = len(modes) - len(rows)
+    return table(["from", "to", "contacts"], rows, left=3) + (f"\nand {more} more" if more else "")
+
+
+def mode_words(mode: Mapping[str, Any]) -> str:
+    """Which contacts touch, and how."""
+    touching = [f"{name} {words(how)}" for name, how in mode["contacts"].items()]
+    return ", ".join(touching) or "none touches"
+
+
+def pairs_in_words(pairs: Mapping[str, Any]) -> str:
+    """How near to exact complementarity is, and what is proved of it."""
+    kind = pairs.get("stationarity")
+    said = [
+        f"complementary within {number(pairs['residual'], 3)}",
+        "polished" if pairs["polished"] else "not polished",
+        *([f"stationary: {kind}"] if kind else []),
+        *([f"{plural(pairs['pinned'], 'pair')} pinned by the ends"] if pairs["pinned"] else []),
+    ]
+    if (lost := pairs.get("dissipation")) is not None:
+        said.append(f"steps lose {100 * lost:.3g} % of the actuators' work")
+    return ", ".join(said)
+
+
+def pass_table(result: Mapping[str, Any]) -> str:
+    """One line for each pass of the homotopy on the published mesh."""
+    rows = [
+        [
+            number(one["relaxation"], 3),
+            words(one["form"]),
+            number(one["residual"], 3),
+            number(one["objective"], 10),
+            str(one["nlp_iterations"]),
+            f"{one['seconds']:.3f}",
+            words(one["status"]),
+        ]
+        for one in result["complementarity"]["passes"]
+    ]
+    head = ["relaxation", "form", "residual", "objective", "iterations", "seconds", "status"]
+    return table(head, rows)
 
 
 def stage_table(result: Mapping[str, Any]) -> str:

@@ -42,13 +42,16 @@ class Strategy:
     ``adaptive``: choose the barrier parameter anew at each iteration, which helps hard problems
     and hurts some easy ones. ``rescaled``: divide rows and objective by their slopes at the start.
     ``free``: adaptive, and never held at one parameter; starts near its limits. For objectives
-    that are linear in slacks.
+    that are linear in slacks. ``exact``: constraints to 1e-8, whatever the tolerance. ``steady``:
+    as if constraints depended on each other, at the price of the last digits.
     """
 
     name: str = "default"
     adaptive: bool = False
     rescaled: bool = False
     free: bool = False
+    exact: bool = False
+    steady: bool = False
 
 
 DEFAULT = Strategy()
@@ -94,7 +97,7 @@ class Backend(ABC):
 
     def offers(self, strategy: Strategy) -> bool:
         """Whether the strategy makes a difference here."""
-        return not (strategy.adaptive or strategy.rescaled)
+        return not (strategy.adaptive or strategy.rescaled or strategy.steady)
 
     @abstractmethod
     def solve(

@@ -34,6 +34,21 @@ STATUSES: Mapping[str, NlpStatus] = MappingProxyType(
 )
 """What IPOPT returns -> the neutral status. Anything else is a fault of the engine."""
 
+_EXACT = 1e-8  # violation of a scaled row
+
+_CONTINUED = {
+    "ipopt.warm_start_init_point": "yes",
+    "ipopt.mu_init": 1e-2,  # the next relaxation is far: smaller ones took up to twice as long
+    **{
+        f"ipopt.warm_start_{which}": 1e-9
+        for which in (
+            *("bound_push", "bound_frac", "slack_bound_push", "slack_bound_frac"),
+            "mult_bound_push",
+        )
+    },
+}
+"""For a start with multipliers: the pushes of a start without leave the optimum it comes from."""
+
 _SETTLED = ("Solve_Succeeded", "Solved_To_Acceptable_Level", "User_Requested_Stop")
 
 
@@ -68,6 +83,8 @@ class Ipopt(Backend):
     ) -> Outcome:
         """Solve by interior points; the callback sees each iterate."""
         options = _options(settings, watch, warm=warm) | _switches(strategy)
+        if warm and task.row_multipliers is not None:
+            options |= _CONTINUED
         options |= task.nlp.derivatives()
         with memory_watch(options) as check_memory:
             ended = run("ipopt", task, watch, options)
@@ -110,6 +127,11 @@ def _switches(strategy: Strategy) -> dict[str, Any]:
             "ipopt.bound_push": 1e-4,
             "ipopt.bound_frac": 1e-4,
         }
+    if strategy.exact:
+        options["ipopt.constr_viol_tol"] = _EXACT
+        options["ipopt.barrier_tol_factor"] = 10.0  # sooner on, relaxed contacts get lost
+    if strategy.steady:
+        options["ipopt.perturb_always_cd"] = "yes"
     if strategy.rescaled:
         # Slopes above 1 are divided down to it; by default, those above 100.
         options["ipopt.nlp_scaling_max_gradient"] = 1.0

@@ -64,7 +64,6 @@ def run(
     MemoryError
         If memory runs out.
     """
-    callback = _Callback(task, see or watch.see)  # CasADi holds no reference of its own
     callback = _Callback(task, see or watch.see)  # CasADi does not keep it alive
     solver = ca.nlpsol(
         plugin,
@@ -74,7 +73,7 @@ def run(
     )
     began = time.perf_counter()
     limits = {"lbx": task.lower, "ubx": task.upper, "lbg": task.row_lower, "ubg": task.row_upper}
-    result = called(lambda: solver(x0=task.start, **limits))
+    result = called(lambda: solver(x0=task.start, **limits, **_multipliers(task)))
     seconds = time.perf_counter() - began
     if result is None:
         return Ended(
@@ -90,6 +89,12 @@ def run(
         result["lam_g"].full().ravel(),
         result["lam_x"].full().ravel(),
     )
+
+
+def _multipliers(task: NlpTask) -> dict[str, Array]:
+    """Where the multipliers begin, as far as the task knows; zero else."""
+    known = {"lam_g0": task.row_multipliers, "lam_x0": task.bound_multipliers}
+    return {name: values for name, values in known.items() if values is not None}
 
 
 def called(solve: Callable[[], dict[str, ca.DM]]) -> dict[str, ca.DM] | None:

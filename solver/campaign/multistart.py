@@ -4,7 +4,7 @@ import dataclasses
 import time
 
 from schemas.events import StageStarted
-from schemas.guesses import Guess, RandomGuess
+from schemas.guesses import Guess, PosesGuess, RandomGuess
 from schemas.problem import Problem
 from schemas.reading import spec_sha256
 from schemas.results import Solution
@@ -14,6 +14,9 @@ from solver.run import Run
 
 OWN = 0
 """The seed by which the problem's own guess is told, where that is not a random one."""
+
+_SPREAD = 0.05
+"""Of the noise about key poses, of which the problem's bounds are seldom the scale."""
 
 
 def solve_guesses(problem: Problem, solve: SolveOnce, run: Run) -> Solution:
@@ -44,7 +47,7 @@ def started(problem: Problem, number: int) -> tuple[int, Problem]:
     """The seed and the problem of guess ``number``, which counts from 0.
 
     The first is the problem's own guess; then random ones, in phases with guesses of their own,
-    too. The seeds of a random guess count on from its own.
+    too, about key poses where it has them. The seeds of a random guess count on from its own.
     """
     own = problem.guess
     first = own.seed if isinstance(own, RandomGuess) else OWN
@@ -64,6 +67,8 @@ def started(problem: Problem, number: int) -> tuple[int, Problem]:
 def _random(guess: Guess, number: int) -> RandomGuess:
     if isinstance(guess, RandomGuess):
         return guess.model_copy(update={"seed": guess.seed + number})
+    if isinstance(guess, PosesGuess):
+        return RandomGuess(kind="random", seed=OWN + number, spread=_SPREAD, about=guess)
     duration = getattr(guess, "duration", None)
     return RandomGuess(kind="random", seed=OWN + number, duration=duration)
 

@@ -5,7 +5,7 @@ import numpy as np
 from schemas import resolve
 from schemas.expressions import Name, stem
 from schemas.results import Check
-from solver.certificate.case import Case, PhaseCase
+from solver.certificate.case import AnyPhase, Case
 from solver.certificate.findings import Finding, judge, violation, worst_sample
 
 
@@ -38,7 +38,7 @@ def static_bounds(case: Case) -> Check | None:
     return judge("static bounds", findings, case.constraint_tolerance)
 
 
-def _outside(phase: PhaseCase, *, of_controls: bool) -> list[Finding]:
+def _outside(phase: AnyPhase, *, of_controls: bool) -> list[Finding]:
     """A finding for each bound, be it on one of the controls or not."""
     controls = phase.spec.system.control_names
     names = [name for name in phase.spec.bounds if (stem(name)[1] in controls) == of_controls]

@@ -4,7 +4,7 @@ import functools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, Self
+from typing import Self
 
 import numpy as np
 
@@ -17,6 +17,8 @@ from schemas.results import PhaseResult
 from schemas.urdf import Urdf
 from solver.certificate.bodies import Bodies, Evaluate
 from solver.certificate.clock import ENDLESS, Clock
+from solver.certificate.scope import Numbers, Quadrature
+from solver.certificate.stepped import ContactCase, stepping
 from solver.lowering import lower
 from solver.lowering.form import Form
 from solver.lowering.used import used_integrals
@@ -37,13 +39,6 @@ COARSE_TOLERANCE = 1e-3
 
 SAMPLES = 25
 """Points a segment, both ends included, at which bounds and path constraints are sampled."""
-
-
-class Quadrature(NamedTuple):
-    """An integral over the published curves, and a bound on the quadrature's own error."""
-
-    value: float
-    error: float
 
 
 @dataclass(frozen=True)
@@ -147,9 +142,11 @@ class PhaseCase:
     @functools.cached_property
     def scope(self) -> dict[str, float]:
         """Every number that boundary constraints and objectives may use."""
-        integrals = {name: found.value for name, found in self.integrals.items()}
-        ends = {**self.ends, "duration": self.duration}
-        return {**self.statics, **self.parameters, **integrals, **ends}
+        own = (self.statics, self.parameters, self.integrals, self.ends, self.duration)
+        return Numbers(*own).scope()
+
+
+AnyPhase = PhaseCase | ContactCase
 
 
 @dataclass(frozen=True)
@@ -157,7 +154,7 @@ class Case:
     """All phases, the published objective, and the tolerances to judge by."""
 
     problem: Problem
-    phases: tuple[PhaseCase, ...]
+    phases: tuple[AnyPhase, ...]
     statics: Mapping[str, float]
     objective: float | None
     tolerance: float
@@ -181,16 +178,30 @@ class Case:
         """
         by_name = {result.name: result for result in results}
         values = {name: _number(statics.get(name)) for name in problem.static}
-        phases = []
-        for spec, form in zip(problem.phases, lower(problem), strict=True):
+        phases: list[AnyPhase] = []
+        for index, (spec, form) in enumerate(zip(problem.phases, lower(problem), strict=True)):
             if spec.name not in by_name:
                 raise MalformedCurves(f"phase {spec.name} has no result")
+            if stepping(problem, index):
+                found = by_name[spec.name]
+                phases.append(ContactCase.of(problem, index, found, values, clock))
+                continue
             curves = PhaseCurves.read(form, by_name[spec.name])
             used = used_integrals(problem, spec)
             phases.append(PhaseCase(spec, form, curves, values, used, clock))
         settings = problem.certificate
         tolerances = certificate_tolerance(problem), settings.constraint_tolerance
         return cls(problem, tuple(phases), values, objective, *tolerances)
+
+    @property
+    def curved(self) -> list[PhaseCase]:
+        """The phases whose curves have to obey the dynamics all along."""
+        return [phase for phase in self.phases if isinstance(phase, PhaseCase)]
+
+    @property
+    def stepped(self) -> list[ContactCase]:
+        """The phases of contact-implicit steps."""
+        return [phase for phase in self.phases if isinstance(phase, ContactCase)]
 
     @functools.cached_property
     def scope(self) -> dict[str, float]:

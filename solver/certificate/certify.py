@@ -7,6 +7,7 @@ import numpy as np
 
 from schemas.problem import Problem
 from schemas.results import Certificate, Check, PhaseResult
+from solver.certificate import audit, losses, momentum, replay
 from solver.certificate.bounds import control_overshoot, state_bounds, static_bounds
 from solver.certificate.case import Case
 from solver.certificate.clock import Clock, OutOfTime
@@ -18,6 +19,31 @@ from solver.certificate.held import contacts_and_loops
 from solver.certificate.objective import objective as recomputed
 from solver.certificate.rollout import rollout
 from solver.numeric import MalformedCurves
+
+AUDIT: tuple[Callable[[Case], Check | None], ...] = (
+    audit.step_velocities,
+    audit.normal_work,
+    audit.friction_work,
+    audit.limit_work,
+    audit.energy_balance,
+    momentum.momentum,
+    momentum.equations_of_motion,
+    audit.complementarity,
+    audit.penetration,
+    audit.tunnelling,
+    audit.slips_between,
+    audit.closed_loops,
+)
+"""Of phases of contact-implicit steps, on which no curve could be integrated."""
+
+REPORTED: tuple[Callable[[Case], Check | None], ...] = (
+    losses.dissipation,
+    momentum.forward_dynamics,
+    replay.early_replay,
+    replay.whole_replay,
+    rollout,
+)
+"""Those that have no say in the verdict. The last ones take the most time."""
 
 JUDGED: tuple[Callable[[Case], Check | None], ...] = (
     interval_defect,
@@ -32,11 +58,12 @@ JUDGED: tuple[Callable[[Case], Check | None], ...] = (
     linkages,
     static_bounds,
     recomputed,
+    *AUDIT,
 )
 """In the order of the certificate's rows. A check answers None where it does not apply."""
 
-CHECKS = (*JUDGED, rollout)
-"""All of them; the rollout has no say in the verdict and takes the most time."""
+CHECKS = (*JUDGED, *REPORTED)
+"""All of them."""
 
 
 @np.errstate(all="ignore")  # numbers that do not exist are findings, not warnings

@@ -7,7 +7,7 @@ import numpy as np
 from schemas import resolve
 from schemas.phases import Constraint
 from schemas.results import Check
-from solver.certificate.case import Case, PhaseCase
+from solver.certificate.case import AnyPhase, Case
 from solver.certificate.findings import Finding, judge, violation, worst_sample
 from solver.certificate.unsettled import unsettled
 from solver.numeric import evaluate
@@ -46,7 +46,7 @@ def linkages(case: Case) -> Check | None:
     return judge("linkages", findings, case.constraint_tolerance)
 
 
-def _along_path(phase: PhaseCase) -> list[Finding]:
+def _along_path(phase: AnyPhase) -> list[Finding]:
     rows = phase.spec.path
     if not rows:
         return []

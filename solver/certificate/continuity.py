@@ -9,7 +9,7 @@ from solver.certificate.findings import Finding, judge, worst_sample
 
 def continuity(case: Case) -> Check | None:
     """The largest jump of a state between segments, relative to one plus its largest size."""
-    findings = [_jump(phase) for phase in case.phases if phase.curves.segments > 1]
+    findings = [_jump(phase) for phase in case.curved if phase.curves.segments > 1]
     return judge("continuity", findings, case.tolerance)
 
 

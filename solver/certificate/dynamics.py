@@ -28,7 +28,7 @@ def interval_defect(case: Case) -> Check | None:
     """
     findings = [
         _distance(phase) if phase.form.flow else _defect(phase, case.tolerance)
-        for phase in case.phases
+        for phase in case.curved
     ]
     return judge("interval defect", findings, case.tolerance)
 

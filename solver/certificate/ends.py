@@ -7,7 +7,7 @@ import numpy as np
 from schemas import resolve
 from schemas.results import Check
 from schemas.values import Bound
-from solver.certificate.case import Case, PhaseCase
+from solver.certificate.case import AnyPhase, Case
 from solver.certificate.findings import Finding, judge, violation
 
 
@@ -37,7 +37,7 @@ def time(case: Case) -> Check | None:
     return judge("time", findings, case.constraint_tolerance)
 
 
-def _starts(phase: PhaseCase, before: PhaseCase | None) -> Finding:
+def _starts(phase: AnyPhase, before: AnyPhase | None) -> Finding:
     if before is None:
         return _beyond(phase, "initial.t", phase.ends["initial.t"], phase.spec.time.start)
     start, end = phase.ends["initial.t"], before.ends["final.t"]
@@ -45,7 +45,7 @@ def _starts(phase: PhaseCase, before: PhaseCase | None) -> Finding:
     return Finding(abs(start - end) / (1 + abs(end)), where)
 
 
-def _ends(phase: PhaseCase) -> list[Finding]:
+def _ends(phase: AnyPhase) -> list[Finding]:
     spec = phase.spec.time
     pairs = (
         ("final.t", phase.ends["final.t"], spec.final),
@@ -54,13 +54,13 @@ def _ends(phase: PhaseCase) -> list[Finding]:
     return [_beyond(phase, what, value, bound) for what, value, bound in pairs if bound]
 
 
-def _off(phase: PhaseCase, side: str, bounds: Mapping[str, Bound]) -> list[Finding]:
+def _off(phase: AnyPhase, side: str, bounds: Mapping[str, Bound]) -> list[Finding]:
     return [
         _beyond(phase, f"{side}.{name}", phase.ends[f"{side}.{name}"], bound)
         for name, bound in bounds.items()
     ]
 
 
-def _beyond(phase: PhaseCase, what: str, value: float, bound: Bound) -> Finding:
+def _beyond(phase: AnyPhase, what: str, value: float, bound: Bound) -> Finding:
     size = violation(np.array(value), resolve.interval(bound, phase.parameters))
     return Finding(float(size), f"phase {phase.name}, {what}")

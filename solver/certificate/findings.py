@@ -45,7 +45,11 @@ def violation(values: Array, limits: tuple[float, float]) -> Array:
 
 
 def judge(
-    name: str, findings: Sequence[Finding], tolerance: float | None, judged: bool = True
+    name: str,
+    findings: Sequence[Finding],
+    tolerance: float | None,
+    judged: bool = True,
+    unit: str = "relative",
 ) -> Check | None:
     """The row of the worst finding; None where there was nothing to look at.
 
@@ -59,7 +63,7 @@ def judge(
         name=name,
         value=worst.value if finite else None,
         tolerance=tolerance,
-        unit="relative",
+        unit=unit,
         passed=finite and (tolerance is None or worst.value <= tolerance),
         judged=judged,
         where=None if worst.value == 0 else worst.where,

@@ -18,7 +18,7 @@ def contacts_and_loops(case: Case) -> Check | None:
 
     All of them are to be zero; a contact that slides only slips to its own side.
     """
-    findings = [finding for phase in case.phases for finding in _of_phase(phase)]
+    findings = [finding for phase in case.curved for finding in _of_phase(phase)]
     return judge("contacts and loops", findings, case.constraint_tolerance)
 
 

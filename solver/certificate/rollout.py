@@ -22,7 +22,7 @@ def rollout(case: Case) -> Check | None:
     that is no fault of the curves. Hence no tolerance. Compared at the breaks. A closed form has
     nothing to integrate.
     """
-    findings = [_deviation(phase) for phase in case.phases if not phase.form.flow]
+    findings = [_deviation(phase) for phase in case.curved if not phase.form.flow]
     return judge("open-loop rollout", findings, tolerance=None, judged=False)
 
 

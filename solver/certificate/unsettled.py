@@ -3,13 +3,13 @@
 import math
 
 from schemas.expressions import Tree
-from solver.certificate.case import Case, PhaseCase
+from solver.certificate.case import AnyPhase, Case
 from solver.certificate.findings import Finding
 from solver.lowering.used import integrals_in
 
 
 def unsettled(
-    case: Case, tree: Tree, tolerance: float, within: PhaseCase | None = None
+    case: Case, tree: Tree, tolerance: float, within: AnyPhase | None = None
 ) -> list[Finding]:
     """Integrals in a tree whose own quadrature is no better than the tolerance to judge by.
 

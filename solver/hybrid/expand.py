@@ -6,7 +6,7 @@ from itertools import pairwise
 
 from schemas.expressions import Call, Expression, Name, Number
 from schemas.mechanisms import Mechanism, Mode
-from schemas.methods import Hybrid, HybridMode
+from schemas.methods import ContactImplicit, Hybrid, HybridMode
 from schemas.periodic import Impact, Periodic
 from schemas.phases import Phase
 from schemas.problem import Objective, Problem, Static
@@ -100,6 +100,8 @@ def _split(problem: Problem, phase: Phase) -> Split | None:
 
 def _parts(problem: Problem, phase: Phase, split: Split | None) -> list[Phase]:
     method = phase.method or problem.method
+    if isinstance(method, ContactImplicit):  # its first step looks back at the last one
+        return [phase]
     if split is None or not isinstance(method, Hybrid) or not isinstance(phase.system, Mechanism):
         return [phase.model_copy(update={"periodic": None})]
     return mode_phases(phase, phase.system, method, split.shares)

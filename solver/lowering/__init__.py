@@ -5,8 +5,18 @@ first-order ones; absolute values become slacks or smooth functions.
 """
 
 from solver.lowering.form import Form, Holonomic, Unknowns
-from solver.lowering.lower import lower, lower_native
+from solver.lowering.lower import STRETCH, lower, lower_native
 from solver.lowering.slacks import Slacks, slacks
 from solver.lowering.smoothed import smoothed
 
-__all__ = ["Form", "Holonomic", "Slacks", "Unknowns", "lower", "lower_native", "slacks", "smoothed"]
+__all__ = [
+    "STRETCH",
+    "Form",
+    "Holonomic",
+    "Slacks",
+    "Unknowns",
+    "lower",
+    "lower_native",
+    "slacks",
+    "smoothed",
+]

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from schemas.expressions import Tree
+from solver.mechanics.principle import Principle
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +71,13 @@ class Form:
     holonomic
         What contacts and loops hold. The unknowns' rows keep its acceleration at zero; methods
         keep it from drifting (``solver.model.drift``).
+    balance
+        Under time steps through contact, label -> residual over accelerations ``dd(q)``, which are
+        then no unknowns: the method makes them of velocities.
+    solid
+        Gaps between bodies, which must not pass through each other within a step.
+    principle
+        The same under discrete-gradient steps: what the balance of momentum is made of.
     """
 
     constants: Mapping[str, float]
@@ -83,6 +91,9 @@ class Form:
     residuals: Mapping[str, Tree] = field(default_factory=dict)
     publish: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     holonomic: tuple[Holonomic, ...] = ()
+    balance: Mapping[str, Tree] = field(default_factory=dict)
+    solid: tuple[str, ...] = ()
+    principle: Principle | None = None
 
     @property
     def algebraic(self) -> tuple[str, ...]:

@@ -1,12 +1,14 @@
 """Every system as a form: by integrators, algebraic unknowns and definitions."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 from schemas import resolve
 from schemas.errors import InvalidModel, Issue
 from schemas.expressions import Call, Name, Tree, derivative, names_in, stem
 from schemas.mechanisms import Mechanism
+from schemas.methods import ContactImplicit
 from schemas.pointers import pointer
 from schemas.problem import Problem
 from schemas.systems import SecondOrder, System
@@ -15,6 +17,11 @@ from solver.lowering.derivations import CannotDerive, Derivations
 from solver.lowering.form import Form, Unknowns
 from solver.lowering.motion import Motion, motion_of
 from solver.lowering.uses import used_series
+from solver.mechanics.principle import Principle, principle_of
+from solver.mechanics.spatial_principle import spatial_principle
+
+STRETCH = "#stretch"
+"""The state that is a step's length over that of the mesh, where the steps of pairs are free."""
 
 
 def lower(problem: Problem) -> tuple[Form, ...]:
@@ -56,9 +63,12 @@ def _guarded(way: Callable[[Problem, int], Form], problem: Problem, index: int) 
 def _lower(problem: Problem, index: int) -> Form:
     system = problem.phases[index].system
     constants = resolve.parameters(system)
-    motion = motion_of(system)
+    whole, method = motion_of(system), _by_steps(problem, index)
+    principle = _principle(system, method)
     states, controls = system.state_names, system.control_names
-    free, known, found = {*controls, *motion.forces}, {*states}, {*motion.implicit}
+    motion = whole if method is None else _bare(whole, states)
+    free, found = {*controls, *motion.forces}, {*motion.implicit}
+    known = {*states, *_stretch(method)}
 
     def is_leaf(name: str) -> bool:
         order, base = stem(name)
@@ -69,21 +79,83 @@ def _lower(problem: Problem, index: int) -> Form:
     needed += _names(motion.flow.values())
     needed += [name for row in motion.holonomic for name in row.names]
     derivations.demand(needed)
-    groups = _unknowns(derivations, motion, needed)
+    stepped = whole.rows if method is not None and principle is None else ()
+    balance = {_label(row): _itself(whole, row) for row in stepped}
+    needed += (
+        *_names(balance.values()),
+        *(_slips(system) if method is not None else ()),
+    )  # slips: for guesses
+    derivations.demand(needed)
+    groups = _unknowns(derivations, motion, needed) if method is None else ()
     needed += _names(row for group in groups for row in group.residuals)
     definitions = derivations.definitions(needed)
     chains = _chains(controls, [*needed, *_names(definitions.values())])
     return Form(
         constants=constants,
-        states=(*states, *(name for chain in chains for name in chain[:-1])),
+        states=(*states, *(name for chain in chains for name in chain[:-1]), *_stretch(method)),
         controls=tuple(chain[-1] for chain in chains),
         definitions=definitions,
         derivatives=_first_order(motion, definitions, chains),
         unknowns=groups,
+        balance=balance,
+        solid=_solid(system) if method is not None else (),
         flow=motion.flow,
-        publish=_publish(system, chains) | _forces(motion),
+        publish=_publish(system, chains, _stretch(method)) | _forces(motion),
         holonomic=motion.holonomic,
+        principle=principle,
     )
+
+
+def _by_steps(problem: Problem, index: int) -> ContactImplicit | None:
+    """The method of a phase that is stepped through contact."""
+    phase = problem.phases[index]
+    method = phase.method or problem.method
+    stepped = isinstance(phase.system, Mechanism | Urdf)
+    return method if stepped and isinstance(method, ContactImplicit) else None
+
+
+def _itself(motion: Motion, row: str) -> Name:
+    """A row of the balance; one that holds an acceleration holds its place instead.
+
+    That keeps the norms of quaternions: steps as long as these would let them drift.
+    """
+    tree = motion.trees[row]
+    places = {derivative(one.place, 2): one.place for one in motion.holonomic if one.place}
+    return Name(places.get(tree.name, row) if isinstance(tree, Name) else row)
+
+
+def _stretch(method: ContactImplicit | None) -> tuple[str, ...]:
+    """The lengths of steps that share the time of a pair."""
+    return (STRETCH,) if method is not None and method.steps == "pairwise" else ()
+
+
+def _slips(system: System) -> Iterator[str]:
+    if isinstance(system, Mechanism):
+        yield from (f"contact.{pair}.slip" for pair in system.touching)
+    if isinstance(system, Urdf):
+        yield from (f"contact.{name}.slip_{axis}" for name in system.touching for axis in "xy")
+
+
+def _solid(system: System) -> tuple[str, ...]:
+    """The gaps of pairs that are not with the ground."""
+    if not isinstance(system, Mechanism):
+        return ()
+    pairs = system.touching.items()
+    return tuple(f"contact.{name}.gap" for name, one in pairs if one.against in system.shapes)
+
+
+def _bare(motion: Motion, states: Sequence[str]) -> Motion:
+    """Without rates of velocities, and without what is held."""
+    rates = {name: motion.derivatives[name] for name in states[: len(states) // 2]}
+    return replace(motion, derivatives=rates, rows=(), forces=(), holonomic=())
+
+
+def _principle(system: System, method: ContactImplicit | None) -> Principle | None:
+    if method is None or method.discretisation != "discrete_gradient":
+        return None
+    if isinstance(system, Urdf):
+        return spatial_principle(system)
+    return principle_of(system) if isinstance(system, Mechanism) else None
 
 
 def _lower_native(problem: Problem, index: int) -> Form:
@@ -195,9 +267,11 @@ def _forces(motion: Motion) -> dict[str, tuple[str, ...]]:
     return {"forces": motion.forces} if motion.forces else {}
 
 
-def _publish(system: System, chains: Iterable[tuple[str, ...]]) -> dict[str, tuple[str, ...]]:
+def _publish(
+    system: System, chains: Iterable[tuple[str, ...]], more: tuple[str, ...] = ()
+) -> dict[str, tuple[str, ...]]:
     return {
-        "states": tuple(system.state_names),
+        "states": (*system.state_names, *more),
         "controls": tuple(system.control_names),
         "rates": tuple(name for chain in chains for name in chain[1:]),
     }

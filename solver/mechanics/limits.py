@@ -41,7 +41,8 @@ def _limited(phase: Phase) -> Phase:
 def _own(system: Mechanism | Urdf, constants: Mapping[str, float]) -> Iterator[tuple[str, Limits]]:
     """Names and their limits."""
     if isinstance(system, Urdf):
-        yield from system.intervals.items()
+        pushing = system.define  # stops that push are no bounds (``solver.contact``)
+        yield from (own for own in system.intervals.items() if f"limit.{own[0]}" not in pushing)
         return
     for name, joint in system.joints.items():
         if isinstance(joint, Revolute | Prismatic) and joint.limits is not None:
@@ -76,6 +77,17 @@ def _geared(name: str, motor: Motor, constants: Mapping[str, float]) -> Constrai
     return Constraint.model_construct(
         name=f"motor {name} torque", expression=effort, lower=lower, upper=upper
     )
+
+
+def both(
+    given: Mapping[str, Bound], others: Mapping[str, Bound], constants: Mapping[str, float]
+) -> dict[str, Bound]:
+    """Bounds of both; where both bound a name, the tighter limits hold."""
+    met = {
+        name: _tighter(given.get(name), resolve.interval(bound, constants), constants)
+        for name, bound in others.items()
+    }
+    return {**given, **met}
 
 
 def _tighter(given: Bound | None, limits: Limits, constants: Mapping[str, float]) -> Bound:

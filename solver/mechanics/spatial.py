@@ -141,6 +141,9 @@ class _Balance:
                 found[step.coordinates[0]].append(_damped(body))
         for name in self.motions.system.motor_joints:
             found[name].append(minus(Name(motor_torque(name))))
+        for name, terms in found.items():  # stops that push (``solver.contact``)
+            if (stop := f"limit.{name}") in self.motions.system.define:
+                terms.append(minus(Name(stop)))
         return {name: plus(*terms) for name, terms in found.items()}
 
     def _carried(self, body: Body) -> tuple[Vec3, Vec3]:

@@ -66,8 +66,8 @@ def touching_loads(
 
 
 def held_contacts(motions: Motions, touches: Mapping[str, SpatialTouch]) -> list[SpatialHeld]:
-    """Normals, then tangents, of the contacts that touch."""
-    modes = motions.system.mode
+    """Normals, then tangents, of the contacts that touch; those that are split are not held."""
+    modes = {name: mode for name, mode in motions.system.mode.items() if str(mode) != "split"}
     found = []
     for name, mode in modes.items():
         gap = touches[name].word("gap")

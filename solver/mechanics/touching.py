@@ -8,6 +8,7 @@ its own frame, exact for circles.
 """
 
 from dataclasses import dataclass
+from typing import Literal
 
 from schemas.expressions import Call, Name, Number, Tree, names_in
 from schemas.expressions.differentiation import total_derivative
@@ -97,8 +98,11 @@ def touches(frames: Frames) -> dict[str, Touch]:
     return found
 
 
-def tangential_force(mode: Mode, touch: Touch) -> Tree | None:
-    """The force along the tangent where the mode gives it; None where it is unknown: sticking."""
+def tangential_force(mode: Mode | Literal["split"], touch: Touch) -> Tree | None:
+    """The force along the tangent where the mode gives it; None where it is unknown: sticking.
+
+    A ``split`` one is the difference of two controls (``solver.contact``).
+    """
     normal, slip = Name(f"contact.{touch.name}.normal"), Name(f"contact.{touch.name}.slip")
     rubbing = times(touch.friction, normal)
     match mode:
@@ -112,6 +116,9 @@ def tangential_force(mode: Mode, touch: Touch) -> Tree | None:
             return minus(times(rubbing, Call("sign", (slip,))))
         case "frictionless":
             return ZERO
+        case "split":
+            pair = f"contact.{touch.name}"
+            return less(Name(f"{pair}#right"), Name(f"{pair}#left"))
 
 
 def _on_surface(frames: Frames, name: str, pair: Pair, surface: Surface) -> Touch:

@@ -50,6 +50,8 @@ def times(*factors: Tree) -> Tree:
     """A product without ones; its number is in front, its sign outside."""
     size, kept = 1.0, list[Tree]()
     for factor in factors:
+        if factor is ZERO:
+            return ZERO
         negative = isinstance(factor, Call) and factor.function == "neg"
         plain = factor.arguments[0] if isinstance(factor, Call) and negative else factor
         size = -size if negative else size
@@ -58,7 +60,7 @@ def times(*factors: Tree) -> Tree:
         else:
             kept.append(plain)
     if size == 0 or not kept:
-        return Number(size or 0.0)
+        return Number(size) if size else ZERO
     if size == -1:
         return minus(_product(kept))
     return _product(kept if size == 1 else [Number(size), *kept])

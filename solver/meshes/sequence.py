@@ -6,11 +6,14 @@ from dataclasses import replace
 import numpy as np
 
 from schemas.events import MeshSolved
+from schemas.methods import ContactImplicit
 from schemas.problem import Problem
-from schemas.results import finite
+from schemas.results import PhaseResult, finite
 from solver.backends import NlpStatus
+from solver.contact.changes import changes
+from solver.mesh import Mesh
 from solver.meshes.demands import demands, honest, shares
-from solver.meshes.solve_mesh import SolvedMesh, Start, solve_mesh
+from solver.meshes.solve_mesh import Array, SolvedMesh, Start, solve_mesh
 from solver.model import Model
 from solver.refinement.curves import decay, seams
 from solver.refinement.meshed import Meshed
@@ -65,6 +68,8 @@ def _not_lost(problem: Problem, mesh: SolvedMesh, before: Sequence[SolvedMesh]) 
     elsewhere and call it optimal.
     """
     settings = problem.refinement
+    if mesh.pairs is not None:  # what coarse steps lose, or gain, is no measure for finer ones
+        return mesh
     if settings is None or not before or not mesh.optimal or not before[-1].optimal:
         return mesh
     last = before[-1]
@@ -91,7 +96,8 @@ def _next(problem: Problem, start: Start, solved: Sequence[SolvedMesh], run: Run
         guesses=last.trajectories,
         statics=list(last.statics.values()),
     )
-    return Start(start.number + 1, setting, warm=True, spare=last.max_error <= settings.tolerance)
+    spare = last.max_error <= settings.tolerance
+    return Start(start.number + 1, setting, warm=True, spare=spare, implied=last.redundancy)
 
 
 def _known(problem: Problem, solved: Sequence[SolvedMesh]) -> list[Meshed]:
@@ -109,6 +115,9 @@ def _known(problem: Problem, solved: Sequence[SolvedMesh]) -> list[Meshed]:
         before,
         strict=True,
     ):
+        if transcription.stepped:
+            phases.append(_halved(problem, mesh, errors, result))
+            continue
         if transcription.rigid:  # nothing is cut where there is no error
             phases.append(Meshed(mesh, 0 * errors, transcription.error_order))
             continue
@@ -117,6 +126,19 @@ def _known(problem: Problem, solved: Sequence[SolvedMesh]) -> list[Meshed]:
             Meshed(mesh, errors, transcription.error_order, seams(result), rates, old, least, own)
         )
     return phases
+
+
+def _halved(problem: Problem, mesh: Mesh, losses: Array, result: PhaseResult) -> Meshed:
+    """Time steps are halved all alike: what they lose falls with their length.
+
+    Where that is asked for, twice in which contacts change.
+    """
+    allowed = problem.refinement.tolerance if problem.refinement else np.inf
+    least = np.full(mesh.segments, 1 if np.sum(losses) <= allowed else 2)
+    spec = next(phase for phase in problem.phases if phase.name == result.name)
+    if isinstance(spec.method, ContactImplicit) and spec.method.split_changes:
+        least[changes(result)] *= int(least[0])
+    return Meshed(mesh, 0 * losses, 1, least=least)
 
 
 def _event(problem: Problem, solved: Sequence[SolvedMesh]) -> MeshSolved:

@@ -2,15 +2,18 @@
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.events import StageStarted
+from schemas.events import PassSolved, StageStarted
 from schemas.problem import Problem
-from schemas.results import PhaseResult
+from schemas.results import HomotopyPass, PhaseResult
 from solver.backends import DEFAULT, FREE, NlpStatus, Outcome, Watch
+from solver.complementarity.pairs import Pairing, paired_scaling, unpaired
+from solver.complementarity.solve import PairsWon, solve_pairs
+from solver.contact.publish import published
 from solver.diagnosis import check_start
 from solver.lowering.used import used_integrals
 from solver.model import Model
@@ -43,13 +46,15 @@ _NOTHING = Findings()
 class Start:
     """From where a mesh is solved. ``number`` counts meshes from 0; ``warm``: nearly optimal.
 
-    ``spare``: the mesh before will do where this one comes to nothing.
+    ``spare``: the mesh before will do where this one comes to nothing. ``implied`` equalities were
+    found on the mesh before.
     """
 
     number: int
     setting: Setting
     warm: bool
     spare: bool = False
+    implied: Redundancy | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +62,7 @@ class SolvedMesh:
     """What solving one mesh gave.
 
     ``errors``, ``integral_errors`` and ``excess`` (segments,) per phase, ``switches`` in seconds.
+    ``pairs`` tells of the homotopy, where there are contacts.
     """
 
     setting: Setting
@@ -77,6 +83,7 @@ class SolvedMesh:
     rows: int
     seconds: float
     switches: Sequence[float] = ()
+    pairs: PairsWon | None = None
 
     @property
     def optimal(self) -> bool:
@@ -100,8 +107,15 @@ class SolvedMesh:
 
     @property
     def max_error(self) -> float:
-        """The largest error of a segment."""
-        return float(np.max(np.concatenate(self.errors)))
+        """The largest error of a segment; of time steps through contact what all of them lose."""
+        if self.pairs is None:
+            return float(np.max(np.concatenate(self.errors)))
+        parts = zip(self.setting.transcriptions, self.errors, strict=True)
+        sizes = [np.sum(own) if method.stepped else np.max(own) for method, own in parts]
+        return float(np.max(sizes))
+
+
+_HASTE = 500  # iterations, where there is a relaxed solution at least
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,8 +132,17 @@ class _Built:
     warnings: Sequence[str]
     began: float
 
-    def findings(self, outcome: Outcome, run: Run, number: int) -> Findings:
-        """What a failed solve tells."""
+    def findings(
+        self, outcome: Outcome, run: Run, number: int, pairs: PairsWon | None = None
+    ) -> Findings:
+        """What a failed solve tells; of one with contacts, of these nearly exact."""
+        task, settings = self.task, self.problem.solver
+        if pairs is not None and pairs.strict is not None:
+            task = pairs.strict
+            if pairs.stalled:
+                fewer = min(_HASTE, settings.max_iterations)
+                settings = settings.model_copy(update={"max_iterations": fewer})
+                outcome = replace(outcome, status=NlpStatus.INFEASIBLE)
         if outcome.status is NlpStatus.INFEASIBLE:
             if run.stopped():
                 return Findings()
@@ -127,10 +150,10 @@ class _Built:
             run.on_event(StageStarted(stage="solve", note=note))
         return find(
             outcome,
-            self.problem.solver,
+            settings,
             self.transcribed.program,
             self.scaling,
-            self.task,
+            task,
             lambda: run.watch(number, lambda _: None),
         )
 
@@ -140,8 +163,13 @@ class _Built:
         w, rows = outcome.point.z * scaling.columns, outcome.point.rows * scaling.rows
         extracted = extract(self.transcribed, w)
         phases = [phase.result for phase in extracted]
+        stepped = [one.stepped for one in self.setting.transcriptions]
         if outcome.row_multipliers is not None and outcome.status is NlpStatus.OPTIMAL:
             phases = with_costates(self.transcribed, outcome.row_multipliers / scaling.rows, phases)
+        phases = [
+            published(spec.system, phase) if by_steps else phase
+            for spec, phase, by_steps in zip(self.problem.phases, phases, stepped, strict=True)
+        ]
         statics = {
             static.name: float(w[place])
             for static, place in zip(self.model.statics, self.transcribed.statics, strict=True)
@@ -168,20 +196,26 @@ class _Built:
 
     def _errors(self, phases: list[PhaseResult], statics: dict[str, float]) -> list[Array]:
         """The error of each segment: the largest of its pieces."""
-        parts = zip(self.model.phases, phases, self.setting.transcriptions, strict=True)
+        contacts = self.setting.complementary
+        losses = contacts.losses(phases, statics) if contacts else [np.zeros(0)] * len(phases)
+        parts = zip(self.model.phases, phases, self.setting.transcriptions, losses, strict=True)
         return [
-            segment_errors(phase.chain, result, statics).reshape(-1, method.pieces).max(axis=1)
-            for phase, result, method in parts
+            lost
+            if method.stepped
+            else segment_errors(phase.chain, result, statics).reshape(-1, method.pieces).max(axis=1)
+            for phase, result, method, lost in parts
         ]
 
     def _excess(self, phases: list[PhaseResult], statics: dict[str, float]) -> list[Array]:
         """How far the curves leave their limits in each segment."""
-        parts = zip(
-            self.problem.phases, self.model.phases, phases, self.setting.meshes, strict=True
-        )
+        parts = zip(self.problem.phases, self.model.phases, phases, strict=True)
         return [
-            excess(spec, phase.chain, result, statics, mesh.segments)
-            for spec, phase, result, mesh in parts
+            np.zeros(mesh.segments)
+            if method.stepped
+            else excess(spec, phase.chain, result, statics, mesh.segments)
+            for (spec, phase, result), mesh, method in zip(
+                parts, self.setting.meshes, self.setting.transcriptions, strict=True
+            )
         ]
 
     def _integral_errors(
@@ -189,7 +223,11 @@ class _Built:
     ) -> list[Array]:
         """How far the sums of each segment are off, of the integrals that matter."""
         errors = []
-        for spec, phase, one in zip(self.problem.phases, self.model.phases, extracted, strict=True):
+        parts = zip(self.problem.phases, self.model.phases, extracted, strict=True)
+        for (spec, phase, one), method in zip(parts, self.setting.transcriptions, strict=True):
+            if method.stepped:  # its sums are what it minimizes, by definition
+                errors.append(np.zeros(one.sums.shape[1]))
+                continue
             which = used_integrals(self.problem, spec)
             rows = [i for i, name in enumerate(spec.integrals) if name in which]
             trees = [spec.integrals[name].tree for name in spec.integrals if name in which]
@@ -222,27 +260,55 @@ def solve_mesh(
                 publish(built.read(Won(unfinished)))
 
     with run.stage("solve"):
-        won = solve_task(
-            built.task,
-            problem.solver,
-            lambda: run.watch(start.number, keep),
-            lambda note: run.on_event(StageStarted(stage="solve", note=note)),
-            warm=start.warm,
-            once=start.spare,
-            # An objective that is linear in slacks has kinks at every optimum: see docs/speed.md.
-            first=FREE if model.has_slacks else DEFAULT,
-            limits=limits_of(built.transcribed.program) if problem.solver.portfolio else None,
-        )
-        findings = built.findings(won.outcome, run, start.number)
+        won, pairs = _won(built, start, run, keep)
+        findings = built.findings(won.outcome, run, start.number, pairs)
     with run.stage("refine"):
-        return built.read(won, findings)
+        return replace(built.read(won, findings), pairs=pairs)
+
+
+def _won(
+    built: _Built, start: Start, run: Run, keep: Callable[[Watch], None]
+) -> tuple[Won, PairsWon | None]:
+    """The outcome of one mesh; of one with contacts by a homotopy."""
+    settings, program = built.problem.solver, built.transcribed.program
+
+    def watch() -> Watch:
+        return run.watch(start.number, keep)
+
+    def announce(note: str) -> None:
+        run.on_event(StageStarted(stage="solve", note=note))
+
+    def passed(one: HomotopyPass) -> None:
+        run.on_event(PassSolved(mesh=start.number, **one.model_dump()))
+
+    if (contacts := built.setting.complementary) is not None:
+        pairing = Pairing.of(program, built.scaling, contacts.pairs)
+        found = solve_pairs(
+            built.task, pairing, contacts.settings, settings, watch, passed, warm=start.warm
+        )
+        return found.won, found
+    won = solve_task(
+        built.task,
+        settings,
+        watch,
+        announce,
+        warm=start.warm,
+        once=start.spare,
+        # An objective that is linear in slacks has kinks at every optimum: see docs/speed.md.
+        first=FREE if built.model.has_slacks else DEFAULT,
+        limits=limits_of(program) if settings.portfolio else None,
+    )
+    return won, None
 
 
 def _build(problem: Problem, model: Model, start: Start) -> _Built:
     began = time.monotonic()
     setting = start.setting
     transcribed = transcribe(model, setting)
-    scaling = typical_scaling(transcribed.program)
+    equal, scaling = transcribed.program, typical_scaling(transcribed.program)
+    if setting.complementary is not None:
+        scaling = paired_scaling(equal, scaling, setting.complementary.pairs)
+        equal = unpaired(equal, setting.complementary.pairs)  # whatever the relaxation
     task = NlpTask.of(transcribed.program, scaling)
     warnings: list[str] = []
     if start.number == 0:
@@ -251,7 +317,7 @@ def _build(problem: Problem, model: Model, start: Start) -> _Built:
         warnings += unused_warnings(transcribed.program, task, names)
         warnings += scale_warnings(transcribed.program, task, names)
     settled = [phase.settled for phase in model.phases]
-    redundancy = find_redundancy(transcribed.program, scaling, task.nlp, settled)
+    redundancy = find_redundancy(equal, scaling, task.nlp, settled, start.implied)
     reduced = task.without(redundancy)
     return _Built(
         problem, model, setting, transcribed, scaling, reduced, redundancy, warnings, began

@@ -97,6 +97,7 @@ def _phase(spec: PhaseSpec, form: Form, chain: Form, extra: Slacks | None, *, fi
         end=_interval(spec.time.final, constants),
         duration=_interval(spec.time.duration, constants),
         chain=chain,
+        wraps=spec.periodic is not None,
     )
 
 

@@ -15,15 +15,19 @@ import casadi as ca
 from schemas.expressions import derivative
 from solver.expressions import SX
 from solver.lowering import Form, Holonomic
+from solver.model.shape import PhaseShape
+
+Holds = Form | PhaseShape
+"""What knows its states, and what contacts and loops hold."""
 
 
-def drift_names(form: Form) -> tuple[str, ...]:
+def drift_names(form: Holds) -> tuple[str, ...]:
     """The variables: eta of each place, then zeta of each rate; no user can write them."""
     etas = [f"#eta {one.label}" for one in form.holonomic if one.place is not None]
     return (*etas, *(f"#zeta {one.label}" for one in form.holonomic))
 
 
-def drift_rates(form: Form, scope: Mapping[str, SX], x: SX, drift: SX) -> SX:
+def drift_rates(form: Holds, scope: Mapping[str, SX], x: SX, drift: SX) -> SX:
     """What eta and zeta add to the rates of the states, (n_x,)."""
     if not form.holonomic:
         return SX.zeros(*x.shape)
@@ -38,14 +42,14 @@ def drift_rates(form: Form, scope: Mapping[str, SX], x: SX, drift: SX) -> SX:
     return added
 
 
-def _split(form: Form) -> tuple[list[int], list[int]]:
+def _split(form: Holds) -> tuple[list[int], list[int]]:
     """Positions of the coordinates and of their velocities among the states."""
     place = {name: i for i, name in enumerate(form.states)}
     pairs = [(i, place[rate]) for name, i in place.items() if (rate := derivative(name)) in place]
     return [i for i, _ in pairs], [j for _, j in pairs]
 
 
-def held_values(form: Form, scope: Mapping[str, SX]) -> SX:
+def held_values(form: Holds, scope: Mapping[str, SX]) -> SX:
     """Places, then rates, of what is held."""
     places = [scope[one.place] for one in form.holonomic if one.place is not None]
     return ca.vertcat(SX(0, 1), *places, *(scope[one.rate] for one in form.holonomic))

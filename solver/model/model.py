@@ -75,6 +75,8 @@ class Phase:
     chain
         The motion in first-order form whatever the method: what results publish and the mesh
         error judges.
+    wraps
+        Whether the last step comes before the first one: of periodic phases.
     """
 
     name: str
@@ -93,6 +95,7 @@ class Phase:
     duration: Interval
     chain: Form
     settled: Mapping[str, frozenset[float]] = field(default_factory=dict)
+    wraps: bool = False
 
     @property
     def states(self) -> tuple[str, ...]:

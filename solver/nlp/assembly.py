@@ -14,7 +14,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.expressions import SX
+from solver.nlp.kernel import Piece, kernel_of
 from solver.nlp.program import Program
 from solver.nlp.scaling import Scaling
 from solver.nlp.stages import StageGroup
@@ -42,11 +42,6 @@ class Nlp:
     def derivatives(self) -> dict[str, ca.Function]:
         """The options that hand the derivatives to ``casadi.nlpsol``."""
         return {"grad_f": self.gradient, "jac_g": self.jacobian, "hess_lag": self.hessian}
-
-
-_SHARED = 20_000
-"""Instructions above which equal parts are not looked for: at 200,000 that takes a second and
-saves a twentieth."""
 
 
 class _Entries(NamedTuple):
@@ -102,28 +97,27 @@ class _Stage:
         before = program.groups[:index]
         self.first_row = sum(len(other.rows.names) * other.stages for other in before)
         self.first_sum = program.own_rows
-        self.group, self.count = group, len(group.rows.names)
-        self.own, self.sums = _sharing(group)
-        self.term, self.lifted = ca.vertsplit(self.sums, [0, 1, self.sums.numel()])
+        self.group, self.kernel = group, kernel_of(group)
+        self.count = self.kernel.count
 
     def cost(self, w: ca.MX) -> ca.MX:
         """What the group adds to the objective."""
-        return ca.sum2(self._mapped(w, self.term))
+        return ca.sum2(self._mapped(w, self.kernel.cost()))
 
     def rows(self, w: ca.MX) -> tuple[ca.MX, ca.MX]:
         """The group's own rows at all stages, and what it adds to the lifted sums."""
-        values = self._mapped(w, ca.vertcat(self.own, self.lifted))
+        values = self._mapped(w, self.kernel.values())
         own, lifted = ca.vertsplit(values, [0, self.count, values.shape[0]])
         return ca.vec(own), ca.sum2(lifted)
 
     def slopes(self, w: ca.MX) -> _Entries:
         """Entries of the objective's gradient, as a column."""
-        entries = self._first_order(w, self.term)
+        entries = self._first_order(w, self.kernel.slopes())
         return _Entries(entries.values, entries.columns, np.zeros_like(entries.columns))
 
     def jacobian(self, w: ca.MX) -> _Entries:
         """Entries of the rows' Jacobian, own rows and lifted sums."""
-        entries = self._first_order(w, ca.vertcat(self.own, self.lifted))
+        entries = self._first_order(w, self.kernel.jacobian())
         stages = np.arange(self.group.stages)[None, :]
         local = entries.rows.reshape(-1, self.group.stages, order="F")
         own = self.first_row + local + self.count * stages
@@ -132,70 +126,37 @@ class _Stage:
 
     def hessian(self, w: ca.MX, multipliers: ca.MX, sum_weights: ca.MX) -> _Entries:
         """Entries of the Lagrangian's Hessian, upper triangle of the whole."""
-        group, count = self.group, self.count
-        lam, mu = SX.sym("lam", count), SX.sym("mu", self.sums.numel())
-        lagrangian = ca.dot(lam, self.own) + ca.dot(mu, self.sums)
-        local = ca.triu(ca.hessian(lagrangian, group.variables)[0])
+        group, count, piece = self.group, self.count, self.kernel.hessian()
         own = multipliers[self.first_row : self.first_row + count * group.stages]
-        weights = [
-            (lam, ca.reshape(own, count, group.stages)),
-            (mu, ca.repmat(sum_weights, 1, group.stages)),
-        ]
-        values = self._mapped(w, _nonzeros(local), *weights)
-        row, column = (np.array(side, dtype=int) for side in local.sparsity().get_triplet())
-        a, b = group.columns[row], group.columns[column]
+        lam = ca.reshape(own, count, group.stages)
+        mu = ca.repmat(sum_weights, 1, group.stages)
+        values = self._mapped(w, piece, lam, mu)
+        a, b = group.columns[piece.rows], group.columns[piece.columns]
         # Two symbols may stand for one variable: their cross entry then counts on both sides.
-        twice = np.where((a == b) & (row != column)[:, None], 2.0, 1.0)
+        twice = np.where((a == b) & (piece.rows != piece.columns)[:, None], 2.0, 1.0)
         return _Entries(
             ca.vec(values * ca.DM(twice)),
             np.minimum(a, b).flatten(order="F"),
             np.maximum(a, b).flatten(order="F"),
         )
 
-    def _first_order(self, w: ca.MX, outputs: SX) -> _Entries:
+    def _first_order(self, w: ca.MX, piece: Piece) -> _Entries:
         """Derivatives of stage outputs: local rows, columns of the whole."""
-        local = ca.jacobian(outputs, self.group.variables)
-        row, column = (np.array(side, dtype=int) for side in local.sparsity().get_triplet())
         return _Entries(
-            ca.vec(self._mapped(w, _nonzeros(local))),
-            np.tile(row, self.group.stages),
-            self.group.columns[column].flatten(order="F"),
+            ca.vec(self._mapped(w, piece)),
+            np.tile(piece.rows, self.group.stages),
+            self.group.columns[piece.columns].flatten(order="F"),
         )
 
-    def _mapped(self, w: ca.MX, outputs: SX, *weights: tuple[SX, ca.MX]) -> ca.MX:
+    def _mapped(self, w: ca.MX, piece: Piece, *weights: ca.MX) -> ca.MX:
         """Stage outputs (n,) at all stages, (n, stages); only variables that they use are read."""
         group, stages = self.group, self.group.stages
-        if outputs.numel() == 0:
+        if piece.function.numel_out(0) == 0:
             return ca.MX(0, stages)
-        uses = ca.which_depends(outputs, group.variables, 1, False)
-        used = [i for i, use in enumerate(uses) if use] or [0]
-        symbols = ca.vertcat(*(group.variables[i] for i in used))
-        values = w[group.columns[used].flatten(order="F").tolist()]
-        arguments = [symbols, group.constants, *(symbol for symbol, _ in weights)]
-        stage = ca.Function("stage", arguments, [outputs]).map(stages)
-        inputs = (ca.reshape(values, len(used), stages), ca.DM(group.data))
-        mapped: ca.MX = stage(*inputs, *(value for _, value in weights))
+        values = w[group.columns[piece.used].flatten(order="F").tolist()]
+        inputs = (ca.reshape(values, len(piece.used), stages), ca.DM(group.data))
+        mapped: ca.MX = piece.function.map(stages)(*inputs, *weights)
         return mapped
-
-
-def _sharing(group: StageGroup) -> tuple[SX, SX]:
-    """A group's rows and sums, equal parts computed once where looking for them pays.
-
-    Before they are differentiated: derivatives then share what these share. Another search in
-    each of them would take most of the time to build, for Hessians as long and Jacobians shorter
-    by a tenth.
-    """
-    outputs = [group.rows.expression, group.sums]
-    plain = ca.Function("stage", [group.variables, group.constants], outputs)
-    if plain.n_instructions() > _SHARED:
-        return group.rows.expression, group.sums
-    rows, sums = ca.cse(outputs)
-    return rows, sums
-
-
-def _nonzeros(matrix: SX) -> SX:
-    """The nonzero entries as a column."""
-    return SX(matrix.nz[:]) if matrix.nnz() else SX(0, 1)
 
 
 def _scatter(

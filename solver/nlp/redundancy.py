@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from solver.nlp.assembly import Nlp
 from solver.nlp.decided import decided_rows, settled_rows
-from solver.nlp.program import Program
+from solver.nlp.program import Program, RowLabel
 from solver.nlp.scaling import Scaling
 
 Array = NDArray[np.float64]
@@ -37,7 +37,7 @@ class Redundancy:
 
     ``decided`` are positions of inequalities; ``names`` has each name of an equality once, at
     however many nodes it stands; ``conflicts`` names equalities that depend on others but ask for
-    another value.
+    another value. ``places`` say where the rows are, then the values.
     """
 
     rows: Indices
@@ -45,6 +45,7 @@ class Redundancy:
     decided: Indices
     names: tuple[str, ...]
     conflicts: tuple[str, ...]
+    places: tuple[RowLabel, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,15 +102,19 @@ class _Equalities:
         """How a report calls some equalities, each name once."""
         if len(positions) == 0:
             return ()
-        labels = [label.name for label in self.program.labels()]
+        called = self.places()
+        return tuple(dict.fromkeys(called[position].name for position in positions))
+
+    def places(self) -> list[RowLabel]:
+        """What each is, and where."""
+        labels = list(self.program.labels())
         final = {
-            int(index): f"final {name}"
+            int(index): RowLabel(f"final {name}", block.phase, 1.0)
             for block in self.program.variables.blocks
             for name, indices in zip(block.names, block.indices, strict=True)
             for index in indices
         }
-        called = [labels[row] for row in self.rows] + [final[index] for index in self.fixed]
-        return tuple(dict.fromkeys(called[position] for position in positions))
+        return [labels[row] for row in self.rows] + [final[index] for index in self.fixed]
 
 
 def _in_time(program: Program) -> Indices:
@@ -132,12 +137,18 @@ def find_redundancy(
     scaling: Scaling,
     nlp: Nlp,
     settled: Sequence[Mapping[str, frozenset[float]]] = (),
+    before: Redundancy | None = None,
 ) -> Redundancy:
     """Equalities of the program that follow from the others, inequalities that they decide.
 
     ``settled`` are those that the model knows of, for each phase (``decided.settled_rows``).
+    ``before`` is what was found on another mesh: what is implied at ends of phases is so on all
+    meshes, and need not be found anew.
     """
     equalities = _Equalities.of(program, scaling)
+    decided = np.union1d(decided_rows(program, scaling, nlp), settled_rows(program, settled))
+    if before is not None and not before.conflicts and all(map(_at_end, before.places)):
+        return _again(before, equalities, decided)
     rng = np.random.default_rng(0)
     nudges = _NUDGE * rng.standard_normal((2, program.variables.size))
     first = equalities.at(nlp, nudges[0])
@@ -151,10 +162,44 @@ def find_redundancy(
     return Redundancy(
         equalities.rows[implied[implied < split]],
         equalities.fixed[implied[implied >= split] - split],
-        np.union1d(decided_rows(program, scaling, nlp), settled_rows(program, settled)),
+        decided,
         equalities.names(implied),
         equalities.names(suspects[spanned & ~agree]),
+        _places(equalities, implied),
     )
+
+
+def _places(equalities: _Equalities, positions: Indices) -> tuple[RowLabel, ...]:
+    if len(positions) == 0:
+        return ()
+    known = equalities.places()
+    return tuple(known[position] for position in positions)
+
+
+def _at_end(place: RowLabel) -> bool:
+    return not 0.0 < place.fraction < 1.0
+
+
+def _again(before: Redundancy, equalities: _Equalities, decided: Indices) -> Redundancy:
+    """The same on another mesh."""
+    implied = np.array([], dtype=int)
+    if before.places:
+        wanted = {_key(place) for place in before.places}
+        known = map(_key, equalities.places())
+        implied = np.array([i for i, key in enumerate(known) if key in wanted], dtype=int)
+    split = len(equalities.rows)
+    return Redundancy(
+        equalities.rows[implied[implied < split]],
+        equalities.fixed[implied[implied >= split] - split],
+        decided,
+        before.names,
+        (),
+        before.places,
+    )
+
+
+def _key(place: RowLabel) -> tuple[str, int | None, str]:
+    return place.name, place.phase, repr(place.fraction)  # where there is no time it is NaN
 
 
 def _dependent_rows(matrix: ca.DM, values: Array, shared: NDArray[np.bool_]) -> Indices:

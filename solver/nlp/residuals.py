@@ -61,6 +61,8 @@ def _bound_residuals(program: Program, w: Array) -> Iterator[RowResidual]:
         values = w[block.indices]
         excess = np.maximum(np.maximum(block.lower - values, values - block.upper), 0.0)
         for row, column in np.argwhere(excess > 0):
+            if block.names[row].startswith("#"):  # the relaxation, which a homotopy moves
+                continue
             yield RowResidual(
                 f"bound {block.names[row]}",
                 block.phase,

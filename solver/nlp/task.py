@@ -22,6 +22,10 @@ class NlpTask:
 
     ``nodes`` (n,) puts the variables in order of time, as ``Program.nodes`` does; None where the
     order is not known.
+
+    ``row_multipliers`` (m,) and ``bound_multipliers`` (n,) belong to the start where it is the
+    optimum of a program much like this one, in the convention of ``Outcome``: a warm start then
+    begins from them, too. None where nothing is known of them.
     """
 
     nlp: Nlp
@@ -31,6 +35,8 @@ class NlpTask:
     row_lower: Array
     row_upper: Array
     nodes: Indices | None = None
+    row_multipliers: Array | None = None
+    bound_multipliers: Array | None = None
 
     @classmethod
     def of(cls, program: Program, scaling: Scaling) -> Self:

@@ -12,6 +12,7 @@ REACHED = 1e-4
 """How far a pose may miss what is asked of it, m or rad: a solve does the rest."""
 
 _STARTS, _STEPS, _SHARE = 40, 80, 1e-6
+_NEAR, _APART = 12, 0.1
 _ALIKE, _ENOUGH = 1e-4, 6
 VALUELESS = 1e6
 """What a row without a value counts as missed by."""
@@ -43,19 +44,22 @@ class Search:
     def best(self, box: tuple[Array, Array], start: Array | None = None) -> Found:
         """The pose with the least violation, from some starts; the same ones every time.
 
-        Where several of them end alike there is no better one to be expected.
+        Around a given ``start`` at first, ever farther off. Where several of them end alike there
+        is no better one to be expected.
         """
         lower, upper = box
         rng = np.random.default_rng(0)
         guess = np.zeros(len(lower)) if start is None else start
         found: list[Found] = []
-        for _ in range(_STARTS):
+        for number in range(_STARTS):
             found.append(self._descend(np.clip(guess, lower, upper), lower, upper))
             best = min(found, key=lambda one: one.worst)
             alike = sum(one.worst <= (1 + _ALIKE) * best.worst for one in found)
             if best.worst <= REACHED or alike >= _ENOUGH:
                 break
             guess = rng.uniform(-np.pi, np.pi, len(lower))
+            if start is not None and number < _NEAR:
+                guess = start + _APART * (number + 1) / np.pi * guess
         return best
 
     def _violation(self, poses: Array) -> Array:

@@ -20,7 +20,15 @@ from solver.numeric.tape import Array
 from solver.poses.search import REACHED, VALUELESS, Found, Search
 from solver.poses.tapes import Tapes
 
-_SHOWN = 8
+_SHOWN, _PLACES = 8, 9
+SPLIT = "split"
+"""The mode of a contact that may touch or not (``solver.contact``)."""
+
+INSIDE = 1e-6
+"""M; so deep may a given pose be, which is rounding."""
+
+VERBS = {"initial": "starts", "final": "ends"}
+"""What happens at each end."""
 
 
 class Demand(NamedTuple):
@@ -31,11 +39,18 @@ class Demand(NamedTuple):
     upper: float
     parts: tuple[Part, ...]
     wrong: str
+    enough: float = REACHED
 
 
-def check_poses(tapes: Tapes, phase: Phase, index: int) -> Iterator[Issue]:
-    """An issue for the first end of a mechanism's phase that no pose can have."""
-    posing = _Posing(tapes, phase, index)
+def check_poses(
+    tapes: Tapes, phase: Phase, index: int, *, stepped: bool = False
+) -> Iterator[Issue]:
+    """An issue for the first end of a mechanism's phase that no pose can have.
+
+    Of a phase that is ``stepped`` through contact both ends are clear of all that may be touched,
+    and joints are within their limits there.
+    """
+    posing = _Posing(tapes, phase, index, stepped=stepped)
     for end in ("initial", "final"):
         issue = posing.issue(end)
         if issue is not None:
@@ -46,8 +61,8 @@ def check_poses(tapes: Tapes, phase: Phase, index: int) -> Iterator[Issue]:
 class _Posing:
     """One phase's mechanism, its demands put to numbers."""
 
-    def __init__(self, tapes: Tapes, phase: Phase, index: int) -> None:
-        self.tapes, self.phase, self.index = tapes, phase, index
+    def __init__(self, tapes: Tapes, phase: Phase, index: int, *, stepped: bool) -> None:
+        self.tapes, self.phase, self.index, self.stepped = tapes, phase, index, stepped
         self.system, self.constants = tapes.system, tapes.constants
         self.names = self.system.coordinates
 
@@ -61,13 +76,15 @@ class _Posing:
         search = Search(self.tapes, tape, limits[:, 0], limits[:, 1])
         given = self._box(end)
         found = search.best(given)
-        if found.worst <= REACHED:
+        enough = np.array([one.enough for one in demands])
+        if bool((np.abs(found.missed) <= enough).all()):
             return None
         nearest = search.best(self._box(None), found.pose)
         return self._issue(demands, found, nearest)
 
     def _issue(self, demands: Sequence[Demand], found: Found, nearest: Found) -> Issue:
-        demand = demands[int(np.argmax(np.abs(found.missed)))]
+        shares = [abs(by) / one.enough for by, one in zip(found.missed, demands, strict=True)]
+        demand = demands[int(np.argmax(shares))]
         together = [one.wrong == demand.wrong for one in demands]  # x and y of one loop
         size = np.linalg.norm(found.missed[together])
         hint = f"nearest within the limits of the joints: {self._shown(nearest.pose)}"
@@ -79,7 +96,11 @@ class _Posing:
         return Issue(where, demand.wrong.format(size=f"{size:.4g}"), hint)
 
     def _shown(self, pose: Array) -> str:
-        pairs = [f"{name} = {value:.4g}" for name, value in zip(self.names, pose, strict=True)]
+        digits = ".7g" if self.stepped else ".4g"  # rounding must not push it back in
+        clean = (round(float(value), _PLACES) + 0.0 for value in pose)
+        pairs = [
+            f"{name} = {value:{digits}}" for name, value in zip(self.names, clean, strict=True)
+        ]
         return ", ".join(pairs[:_SHOWN]) + (", ..." if len(pairs) > _SHOWN else "")
 
     def _box(self, end: str | None) -> tuple[Array, Array]:
@@ -99,7 +120,10 @@ class _Posing:
             wrong = f"no pose closes the loop '{name}': {{size}} m stay open"
             for word in ("x", "y"):
                 yield Demand(f"loop.{name}#{word}", 0, 0, ("system", "loops", name), wrong)
-        if end == "initial":
+        if self.stepped:
+            yield from self._clear(end)
+            yield from self._stopped()
+        elif end == "initial":
             yield from self._gaps()
         for name, bound in getattr(self.phase, end).items():
             if self.system.defined.get(name) == MAX_ORDER and stem(name)[0] == 0:
@@ -115,9 +139,25 @@ class _Posing:
         given = bool(np.all(lower == upper))
         for name, pair in self.system.touching.items():
             gap = f"contact.{name}.gap"
-            if name in self.system.mode:
+            if self.system.mode.get(name, SPLIT) != SPLIT:
                 wrong = f"'{name}' touches, but the nearest pose leaves a gap of {{size}} m"
                 yield Demand(gap, 0, 0, ("system", "mode", name), wrong)
             elif given:
                 wrong = f"'{pair.contact}' starts {{size}} m inside of '{pair.against}'"
                 yield Demand(gap, 0, np.inf, ("initial",), wrong)
+
+    def _clear(self, end: str) -> Iterator[Demand]:
+        """Contacts are inside of nothing; a pose that is given is judged as the audit judges."""
+        lower, upper = self._box(end)
+        enough = INSIDE if bool(np.all(lower == upper)) else REACHED
+        for name, pair in self.system.touching.items():
+            wrong = f"'{pair.contact}' {VERBS[end]} {{size}} m inside of '{pair.against}'"
+            yield Demand(f"contact.{name}.gap", 0, np.inf, (end,), wrong, enough)
+
+    def _stopped(self) -> Iterator[Demand]:
+        """Limits of joints that are no coordinates; those that are bound the search."""
+        for name, joint in self.system.joints.items():
+            if name in self.system.defined and getattr(joint, "limits", None) is not None:
+                limits = resolve.interval(self.phase.bounds.get(name), self.constants)
+                wrong = f"'{name}' misses the limits of its joint by {{size}}"
+                yield Demand(name, *limits, ("system", "joints", name, "limits"), wrong)

@@ -8,7 +8,7 @@ import numpy as np
 from footfall.curves import Curve
 from schemas.errors import InvalidModel
 from schemas.expressions import ExpressionError
-from schemas.frames import Arrow, Frames, PlanarPoses
+from schemas.frames import Arrow, Frames, PlanarPoses, SpatialArrow
 from schemas.mechanisms import Mechanism
 from schemas.results import PhaseResult
 from schemas.systems import System
@@ -42,7 +42,7 @@ def with_frames(result: PhaseResult, system: System, statics: Mapping[str, float
             frames = (
                 _frames(system, statics, result, times, q)
                 if isinstance(system, Mechanism)
-                else spatial_frames(system, statics, times, q)
+                else spatial_frames(system, statics, times, q, _pushes(system, result, times))
             )
     except (ExpressionError, InvalidModel):
         return result
@@ -101,7 +101,7 @@ def _floats(rows: list[list[float | None]]) -> Array:
 
 def _forces(
     multibody: Multibody, result: PhaseResult, times: Array, now: Instant
-) -> dict[str, Arrow]:
+) -> dict[str, Arrow | SpatialArrow]:
     """The published forces of contacts as vectors in the world, at the contacts."""
     touch = multibody.parts.touch
     if not touch.names:
@@ -109,7 +109,7 @@ def _forces(
     places = touch.places[0] @ now.pose.features
     normals = now.contacts.normals
     places = places - touch.radii[:, None] * normals
-    found = {}
+    found: dict[str, Arrow | SpatialArrow] = {}
     for row, name in enumerate(touch.names):
         pushes = [
             _force(result, f"contact.{name}.{way}", times) for way in ("normal", "tangential")
@@ -125,6 +125,19 @@ def _forces(
             fx=listed(force.real),
             fy=listed(force.imag),
         )
+    return found
+
+
+def _pushes(system: Urdf, result: PhaseResult, times: Array) -> dict[str, Array]:
+    """The published forces of contacts in space, along x, y and z, (3, times)."""
+    found = {}
+    for name in system.contacts:
+        normal = _force(result, f"contact.{name}.normal", times)
+        if normal is None:
+            continue
+        along = (_force(result, f"contact.{name}.tangential_{way}", times) for way in "xy")
+        x, y = (np.zeros_like(normal) if one is None else one for one in along)
+        found[name] = np.array([x, y, normal])
     return found
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 import scipy  # loads scipy.spatial, which takes long, when it is first asked for
@@ -17,6 +18,7 @@ from schemas.frames import (
     PlanarPoses,
     Point,
     Scene,
+    SpatialArrow,
     SpatialPoses,
 )
 from schemas.urdf import WORLD, Urdf
@@ -49,18 +51,41 @@ _GROUND = "ground"
 _NEAR = 1e-9
 
 
-def spatial_frames(system: Urdf, statics: Mapping[str, float], times: Array, q: Array) -> Frames:
-    """Frames of every link at coordinates (n, N). Raises ExpressionError, InvalidModel."""
+def spatial_frames(
+    system: Urdf,
+    statics: Mapping[str, float],
+    times: Array,
+    q: Array,
+    pushes: Mapping[str, Array] = MappingProxyType({}),
+) -> Frames:
+    """Frames of every link at coordinates (n, N); ``pushes`` are forces of contacts, (3, N), in N.
+
+    Raises ExpressionError, InvalidModel.
+    """
     model = SpatialMultibody.of(system, statics)
     found = model.at(times, q).frames
     names = [one.link for one in system.carriages]
     poses: dict[str, PlanarPoses | SpatialPoses] = {name: _poses(found[name]) for name in names}
     across = np.concatenate([found[name].place[:, 0] for name in names])
+    numbers = _Numbers.of(system, statics)
     return Frames(
         time=times.tolist(),
         bodies=poses,
-        scene=_scene(system, _Numbers.of(system, statics), across),
+        forces={
+            name: _arrow(found[system.contacts[name].link], numbers, name, push)
+            for name, push in pushes.items()
+        },
+        scene=_scene(system, numbers, across),
     )
+
+
+def _arrow(frame: Frame, numbers: "_Numbers", name: str, push: Array) -> SpatialArrow:
+    """A force where its contact touches level ground: below the middle of a sphere."""
+    places = frame.place + frame.axes @ np.array(numbers.centres[name])
+    x, y, z = places.T
+    fx, fy, fz = (listed(row) for row in push)
+    below = listed(z - numbers.radii[name])
+    return SpatialArrow(x=listed(x), y=listed(y), z=below, fx=fx, fy=fy, fz=fz)
 
 
 def _poses(frame: Frame) -> SpatialPoses:

@@ -156,6 +156,11 @@ class SpatialInstant:
                 total[row] -= one.damping * step.factor**2 * self.v[row]
         return total.T.copy()
 
+    @property
+    def pushing(self) -> Array:
+        """The values of the user's forces, N, (forces, N)."""
+        return self._laws()
+
     def _laws(self) -> Array:
         if not self.parts.law_inputs:
             return self.parts.laws((), np.shape(self.t))
@@ -176,6 +181,12 @@ class SpatialInstant:
         numbers = self.parts.numbers
         height = self.centres[name].place[:, 2]
         return np.asarray(height - numbers.height - numbers.radii[name])
+
+    def slip(self, name: str) -> Array:
+        """Of the matter of a contact along the ground, x and y, (N, 2), m/s."""
+        centre, radius = self.centres[name], self.parts.numbers.radii[name]
+        down = np.array([[0.0, 0.0, -radius]])
+        return np.asarray((centre.velocity + crossed(centre.spin, down))[:, :2])
 
     def rows(self, name: str) -> tuple[Array, Array]:
         """Of a contact along z, x and y: Jacobians (N, 3, n) of the point that touches, bias."""

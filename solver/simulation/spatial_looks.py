@@ -40,6 +40,9 @@ class Looked(Protocol):
     def gap(self, name: str) -> Array:
         """Of a contact, (N,)."""
 
+    def slip(self, name: str) -> Array:
+        """Of a contact, (N, 2)."""
+
     @property
     def com(self) -> Array:
         """(N, 3), as the momenta are."""
@@ -85,6 +88,8 @@ def looks(at: Looked) -> dict[str, Look]:
     for name in system.contacts:
         _add_point(found, name, partial(_centre, contact=name))
         found[f"contact.{name}.gap"] = partial(_gap, contact=name)
+        for index, axis in enumerate("xy"):
+            found[f"contact.{name}.slip_{axis}"] = partial(_slip, contact=name, index=index)
     _add_whole(found)
     return found
 
@@ -139,6 +144,10 @@ def _centre(at: Looked, contact: str) -> Frame:
 
 def _gap(at: Looked, contact: str) -> Array:
     return at.gap(contact)
+
+
+def _slip(at: Looked, contact: str, index: int) -> Array:
+    return at.slip(contact)[:, index]
 
 
 def _entry(at: Looked, vector: _Vector, index: int) -> Array:

@@ -8,6 +8,7 @@ import numpy as np
 from schemas import resolve
 from schemas.expressions import Tree, derivative
 from solver.numeric.tape import Array
+from solver.simulation.holding import Held
 from solver.simulation.scope import Vocabulary
 from solver.simulation.spatial import SpatialMultibody
 
@@ -37,9 +38,12 @@ class SpatialPlant:
             return np.concatenate([x[n:], np.full_like(x[n:], np.nan)])
         return np.concatenate([x[n:], held.accelerations])
 
-    def evaluator(self, trees: Sequence[Tree]) -> Callable[[Array, Array, Array], Array]:
+    def evaluator(
+        self, trees: Sequence[Tree], given: Held | None = None
+    ) -> Callable[[Array, Array, Array], Array]:
         """Expressions over everything that the system names, accelerations and forces too.
 
+        These two are the model's own, or ``given``.
         Raises InvalidModel for names without a value here.
         """
         system, model = self.model.system, self.model
@@ -57,7 +61,7 @@ class SpatialPlant:
             at = model.at(t, q, v, u)
             values = {name: early[name](at) for name in taken if name in early}
             if late.intersection(taken):
-                held = model.accelerations(t, q, v, u)
+                held = given or model.accelerations(t, q, v, u)
                 values |= dict.fromkeys(forces, np.zeros(len(t))) | dict(held.forces)
                 values |= dict(zip(accelerations, held.accelerations, strict=True))
             return tape([values[name] for name in taken], np.shape(t))

@@ -11,6 +11,7 @@ from schemas.problem import Problem
 from schemas.reading import spec_sha256
 from schemas.results import (
     Certificate,
+    Complementarity,
     MeshIteration,
     MeshRefinement,
     PhaseResult,
@@ -76,6 +77,8 @@ def _status(
         return SolutionStatus.MESH_LIMIT if lost else _STATUS[last.outcome.status]
     if last is not chosen and last.outcome.status in _ENDED[:2]:
         return _STATUS[last.outcome.status]
+    if chosen.pairs is not None and chosen.pairs.stalled:
+        return SolutionStatus.COMPLEMENTARITY_STALLED
     if certificate.verdict != "certified":
         return SolutionStatus.CERTIFICATE_FAILED
     return SolutionStatus.CONVERGED
@@ -100,8 +103,9 @@ def _solution(
             *advice(problem, status, chosen.phases, residuals, certificate),
         ],
         warnings=[*warnings(problem, chosen.redundancy), *solved[0].warnings],
-        static={name: finite(value) for name, value in chosen.statics.items()},
+        static={name: finite(chosen.statics[name]) for name in problem.static},
         phases=_framed(problem, chosen),
+        complementarity=_complementarity(chosen, certificate),
         mesh_refinement=_history(problem, solved),
         certificate=certificate,
         solver=SolverReport(
@@ -117,6 +121,22 @@ def _solution(
         ),
         timing=run.timing(),
         reproduce=Reproduce(spec_sha256=spec_sha256(problem), versions=dict(_versions())),
+    )
+
+
+def _complementarity(chosen: SolvedMesh, certificate: Certificate) -> Complementarity | None:
+    """The homotopy of the published mesh; what its contacts miss is the certificate's own value."""
+    if (pairs := chosen.pairs) is None:
+        return None
+    checked = {check.name: check.value for check in certificate.checks}
+    return Complementarity(
+        form=pairs.form,
+        passes=list(pairs.passes),
+        polished=pairs.polished,
+        residual=checked.get("complementarity"),
+        stationarity=pairs.stationarity,
+        pinned=pairs.pinned,
+        dissipation=finite(chosen.max_error),
     )
 
 
@@ -167,7 +187,7 @@ def _residual(residual: RowResidual, phases: Sequence[PhaseResult]) -> Residual:
     if phase is not None and np.isfinite(residual.fraction):
         time = phase.knots[0] + residual.fraction * (phase.knots[-1] - phase.knots[0])
     return Residual(
-        name=residual.name,
+        name=residual.name.replace("#", "."),  # a slack is what it stands for
         phase=phase.name if phase else None,
         time=time,
         value=finite(residual.value),

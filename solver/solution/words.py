@@ -6,13 +6,16 @@ import numpy as np
 
 from schemas import resolve
 from schemas.corners import corners
+from schemas.methods import ContactImplicit
 from schemas.problem import Problem
 from schemas.remarks import doubtful, folding, untied
 from schemas.results import Certificate, PhaseResult, Residual, SolutionStatus
+from schemas.stepping import stepping
 from solver.meshes import SolvedMesh
 from solver.model.build import START
 from solver.nlp.redundancy import Redundancy
 from solver.solution.choose import choose
+from solver.solution.friction import friction_advice
 
 _MESSAGES = {
     SolutionStatus.CONVERGED: "Optimal (a local minimum), within the mesh tolerance, certified.",
@@ -25,6 +28,9 @@ _MESSAGES = {
     SolutionStatus.TIME_LIMIT: "The time limit was reached; this is the best iterate.",
     SolutionStatus.CANCELLED: "The solve was stopped; this is the best iterate.",
     SolutionStatus.INVALID_NUMBER: "The model gave no finite number during the solve.",
+    SolutionStatus.COMPLEMENTARITY_STALLED: (
+        "Contacts were not brought to strict complementarity; this is the last relaxed solution."
+    ),
     SolutionStatus.MESH_LIMIT: "The mesh error is still above the tolerance at the finest mesh.",
 }
 
@@ -46,12 +52,23 @@ _ADVICE = {
     SolutionStatus.INVALID_NUMBER: [
         "Bound the states and controls to where every expression has a value."
     ],
+    SolutionStatus.COMPLEMENTARITY_STALLED: [
+        "Give relaxation.schedule more and smaller steps, or choose the form 'inequality'.",
+        "Try other guesses ('multistart'), or more segments.",
+        "Relaxed contacts push from a distance: check whether the task can be done without that.",
+    ],
     SolutionStatus.MESH_LIMIT: [
         "Raise refinement.max_iterations or max_segments, or its tolerance.",
         "Where a control jumps, the error falls slowly: it is the mesh that has to find the jump.",
         "An angle as a control may jump by whole turns between nodes: bound it to one turn.",
     ],
 }
+
+_LOSSY = (
+    "Raise refinement.max_iterations, or method.dissipation, the share that may be lost.",
+    "Little work leaves little to lose: see the energies in the certificate.",
+    "contact_implicit_polished solves the sequence that was found without such losses.",
+)
 
 _CORNERED = (SolutionStatus.ACCEPTABLE, SolutionStatus.DIVERGED, SolutionStatus.ITERATION_LIMIT)
 _CORNER = (
@@ -64,6 +81,7 @@ _AT_CORNERS = (
 )
 _FOREVER = 1e4  # s: seldom meant where nothing limits the time
 _ON_BOUND, _MOSTLY = 1e-4, 0.5
+_WORDS = 2  # of the name of a user's constraint
 _OVERSHOOT = (
     "The control passes its bounds between nodes: use method.control 'linear', or the "
     "trapezoidal method, where a control saturates."
@@ -75,6 +93,9 @@ def message(
 ) -> str:
     """One or two sentences on how the solve ended."""
     text = _MESSAGES[status]
+    if status is SolutionStatus.MESH_LIMIT and solved[-1].pairs is not None:
+        lost = f"{solved[-1].max_error:.0%}"
+        text = f"Outside of impacts steps still lose {lost} of the actuators' work at the finest."
     if status is SolutionStatus.CERTIFICATE_FAILED:
         names = ", ".join(row.name for row in certificate.checks if row.judged and not row.passed)
         text += f" Failed: {names}."
@@ -96,9 +117,14 @@ def advice(
 ) -> list[str]:
     """What to try next."""
     lines = list(_ADVICE.get(status, []))
+    if status is SolutionStatus.MESH_LIMIT and any(
+        isinstance(phase.method, ContactImplicit) for phase in problem.phases
+    ):
+        lines = list(_LOSSY)
     if status is SolutionStatus.LOCALLY_INFEASIBLE:
-        worst = [f"Hardest to meet is {_place(row)}." for row in residuals[:1]]
-        lines = [*worst, *_saturated(problem, phases), *lines]
+        lines = [*_unmet(problem, residuals), *_saturated(problem, phases), *lines]
+    elif status is SolutionStatus.COMPLEMENTARITY_STALLED:
+        lines = [*_unmet(problem, [row for row in residuals if _meant(row)]), *lines]
     lines += _runaway(problem, phases)
     failed = {row.name for row in certificate.checks if row.judged and not row.passed}
     if status is SolutionStatus.CERTIFICATE_FAILED and "control overshoot" in failed:
@@ -109,6 +135,18 @@ def advice(
     if status is SolutionStatus.CERTIFICATE_FAILED and problem.nonsmooth and not switches:
         lines += [_AT_CORNERS] if "objective" in failed else []
     return lines
+
+
+def _unmet(problem: Problem, residuals: Sequence[Residual]) -> Iterator[str]:
+    """The worst constraint, and what friction has to do with it."""
+    for worst in residuals[:1]:
+        yield f"Hardest to meet is {_place(worst)}."
+    yield from friction_advice(problem, residuals)
+
+
+def _meant(row: Residual) -> bool:
+    """Whether it is a user's or a friction cone; rows of pairs have long names."""
+    return len(row.name.split(" ")) <= _WORDS or row.name.endswith(" cone")
 
 
 def _runaway(problem: Problem, phases: Sequence[PhaseResult]) -> Iterator[str]:
@@ -150,5 +188,11 @@ def warnings(problem: Problem, redundancy: Redundancy) -> list[str]:
         f"'{name}' depends on other equalities and may contradict them."
         for name in redundancy.conflicts
     ]
-    found = [untied(problem), folding(problem), corners(problem), doubtful(problem)]
+    found = [
+        untied(problem),
+        folding(problem),
+        corners(problem),
+        doubtful(problem),
+        stepping(problem),
+    ]
     return [*lines, *(line for one in found for line in one)]

@@ -48,7 +48,7 @@ def solve_task(
 
     def attempt(task: NlpTask, strategy: Strategy = begin, *, warm: bool = False) -> Outcome:
         outcome = backend.solve(task, settings, watch(), warm=warm, strategy=strategy)
-        return _judged(task, outcome, settings.tolerance)
+        return judged(task, outcome, settings.tolerance)
 
     if once:
         fewer = min(_HASTE, settings.max_iterations)
@@ -65,7 +65,7 @@ def solve_task(
     return portfolio.solve(task, outcome, begin)
 
 
-def _judged(task: NlpTask, outcome: Outcome, tolerance: float) -> Outcome:
+def judged(task: NlpTask, outcome: Outcome, tolerance: float) -> Outcome:
     """The outcome, optimal where only round-off kept the solver from saying so."""
     rows, bounds = outcome.row_multipliers, outcome.bound_multipliers
     if outcome.status not in _NEARLY or rows is None or bounds is None:

@@ -61,7 +61,8 @@ def guessed_statics(model: Model, guess: Guess) -> list[float]:
 
 def _guess(phase: Phase, guess: Guess, before: float | None, index: int) -> Trajectory:
     start, end = _span(phase, before, guess)
-    times, given = _given(guess, phase.parameters)
+    about = guess.about or guess if isinstance(guess, RandomGuess) else guess
+    times, given = _given(about, phase.parameters)
     shares = (times - times[0]) / (times[-1] - times[0])
     times = start + (end - start) * shares
 
@@ -140,7 +141,8 @@ def _span(phase: Phase, before: float | None, guess: Guess) -> tuple[float, floa
     first = _first(phase, before, 0.0)
     shortest = max(phase.end.lower - first, phase.duration.lower, 0.0)
     longest = max(min(phase.end.upper - first, phase.duration.upper), shortest)
-    wanted = getattr(guess, "duration", None)
+    about = guess.about if isinstance(guess, RandomGuess) else None
+    wanted = getattr(guess, "duration", None) or getattr(about, "duration", None)
     if wanted is not None:
         return first, first + min(max(wanted, shortest), longest)
     if math.isinf(longest):

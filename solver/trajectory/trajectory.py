@@ -60,5 +60,6 @@ class Trajectory:
 
 def straight_lines(names: Sequence[str], times: Array, values: Array) -> Curves:
     """Straight lines through values (names, times)."""
+    values = np.reshape(values, (len(names), len(times)))  # of no names, too
     ends = np.stack([values[:, :-1], values[:, 1:]], axis=1)
     return Curves.through(names, times, [-1.0, 1.0], np.moveaxis(ends, (0, 1, 2), (2, 1, 0)))

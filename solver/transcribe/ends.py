@@ -1,21 +1,23 @@
 """What is asked of the ends: each phase's own constraints, linkages, the objective."""
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import casadi as ca
 import numpy as np
 
-from solver.expressions import SX, evaluate
+from solver.expressions import SX
 from solver.model import Constraint, Interval, Model
-from solver.model.symbolic import Ends, PhaseFunctions, boundary_scope, objective_scope
+from solver.model.shape import ModelShape
 from solver.nlp.stages import Rows, StageGroup
 from solver.nlp.variables import Array, Variables
 from solver.trajectory import Trajectory
-from solver.transcribe.integrals import classify, guessed_integrals
-from solver.transcribe.layout import PhaseLayout, Shared, TimeSymbols
-from solver.transcribe.segments import limit_magnitude, symbolic_stage
+from solver.transcribe.integrals import guessed_integrals
+from solver.transcribe.junction import EndShape, Junction, Side, junction_of
+from solver.transcribe.layout import PhaseLayout
+from solver.transcribe.segments import limit_magnitude
+from solver.transcribe.stage import functions_of
 
 _SHORTEST = 1e-6  # s: a phase of free times keeps its direction
 
@@ -34,25 +36,13 @@ class Joint:
 
 
 @dataclass(frozen=True, slots=True)
-class _Known:
-    """Symbols (n,), and where the variables stand that they are, (n,)."""
+class _Inputs:
+    """Symbols and the variables that they are, at ``columns``; constants and their ``values``."""
 
-    symbols: SX
-    columns: list[int]
-
-
-@dataclass(frozen=True, slots=True)
-class _PhaseEnds:
-    """One phase's ends, and the variables of their segments.
-
-    ``path`` has the values at the start of the constraints along the phase, (rows,); ``unknowns``
-    counts the unknowns that have variables of their own there.
-    """
-
-    ends: Ends
-    known: _Known
-    path: SX
-    unknowns: int
+    variables: SX
+    columns: Sequence[int]
+    constants: SX
+    values: Sequence[float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,151 +55,147 @@ class _Row:
     fraction: float = math.nan
 
 
-def join_ends(
-    model: Model,
-    layouts: Sequence[PhaseLayout],
-    functions: Sequence[PhaseFunctions],
-    guesses: Sequence[Trajectory],
-    statics: Sequence[float],
-    variables: Variables,
-) -> Joint:
-    """Build the groups; lifted integrals are added to ``variables``."""
-    shared = _one_of_each([layout.shared() for layout in layouts])
-    sides = [
-        _phase_ends(index, *each, variables)
-        for index, each in enumerate(zip(layouts, shared, functions, strict=True))
-    ]
-    names = [static.name for static in model.statics]
-    scopes = [
-        boundary_scope(layout.phase, side.ends, names, eliminate=layout.transcription.eliminates)
-        for layout, side in zip(layouts, sides, strict=True)
-    ]
-    own = [_rows(*each) for each in zip(layouts, sides, scopes, strict=True)]
-    whole = objective_scope(model, scopes, shared[0].statics)
-    links = [_row(linkage, whole) for linkage in model.linkages]
-    objective = SX(0) if model.objective is None else evaluate(model.objective, whole)
-    integrals = ca.vertcat(SX(0, 1), *(side.ends.integrals for side in sides))
-    use = classify(objective, _values([row for rows in (*own, links) for row in rows]), integrals)
+@dataclass(frozen=True, slots=True)
+class Ending:
+    """Joins the ends of phases that are laid out; adds lifted integrals to ``variables``.
 
-    named = [(name, index) for index, phase in enumerate(model.phases) for name in phase.integrals]
-    lifted = tuple(named[place] for place in use.lifted)
-    start = np.concatenate(
-        [
-            guessed_integrals(*each, statics)
-            for each in zip(model.phases, functions, guesses, strict=True)
+    ``constants`` are those of objective and linkages, ``statics`` the values to start from.
+    """
+
+    model: Model
+    shape: ModelShape
+    constants: Sequence[float]
+    layouts: Sequence[PhaseLayout]
+    variables: Variables
+
+    def join(self, guesses: Sequence[Trajectory], statics: Sequence[float]) -> Joint:
+        """Build the groups."""
+        own = [self._own_unknowns(*each) for each in enumerate(self.layouts)]
+        junction = self._junction([len(columns) for columns in own])
+        sides = [_inputs(*each) for each in zip(self.layouts, junction.sides, own, strict=True)]
+        values = [*(value for side in sides for value in side.values), *self.constants]
+        use = junction.integrals.use(values)
+        phases = self.model.phases
+        named = [(name, index) for index, phase in enumerate(phases) for name in phase.integrals]
+        lifted = tuple(named[place] for place in use.lifted)
+        places = self._lift(lifted, guesses, statics)
+        totals = _Inputs(junction.totals, places, SX(0, 1), ())
+        groups = []
+        for index, (layout, side) in enumerate(zip(self.layouts, sides, strict=True)):
+            symbols = junction.sides[index]
+            shared = _Inputs(symbols.shared.symbols, layout.shared().columns.tolist(), SX(0, 1), ())
+            if rows := _rows(layout, symbols, len(own[index])):
+                none = SX(1 + len(lifted), 1)
+                groups.append(_group(index, [side, shared, totals], rows, none))
+        sums = ca.vertcat(junction.objective, -junction.totals)
+        joint = _Inputs(SX(0, 1), (), junction.constants, self.constants)
+        known = [*sides, self._once(junction), totals, joint]
+        groups.append(_group(None, known, self._linkages(junction), sums))
+        return Joint((*groups,), use.weights([len(phase.integrals) for phase in phases]), lifted)
+
+    def _own_unknowns(self, index: int, layout: PhaseLayout) -> list[int]:
+        """Unknowns at the phase's start where the method has none there: else they were guessed.
+
+        They start from those of the next node.
+        """
+        (strip, segment), _ = layout.ends()
+        names = layout.phase.form.algebraic
+        whole = layout.transcription
+        if whole.shares_controls or whole.eliminates or not names:
+            return []
+        beside = strip.blocks["algebraic"][1][: len(names), segment]
+        guess, scale = (self.variables.gather(name)[beside] for name in ("guess", "scale"))
+        open_sides = (np.full((1, 1), -np.inf), np.full((1, 1), np.inf))
+        block = self.variables.add(index, names, np.zeros(1), open_sides, guess[:, None], scale)
+        return [int(place) for place in block[:, 0]]
+
+    def _junction(self, unknowns: Sequence[int]) -> Junction:
+        numbers: dict[int, int] = {}
+        ends, stages = [], []
+        for layout, count in zip(self.layouts, unknowns, strict=True):
+            strips = [strip for strip, _ in layout.ends()]
+            first, last = (layout.stage_shape(strip) for strip in strips)
+            columns = layout.shared().columns.tolist()
+            shared = tuple(numbers.setdefault(column, len(numbers)) for column in columns)
+            ends.append(EndShape(first, last, count, shared))
+            stages.append((layout.stage(strips[0]), layout.stage(strips[1])))
+        return junction_of(self.shape, tuple(ends), stages)
+
+    def _once(self, junction: Junction) -> _Inputs:
+        """Times and statics of all phases, each once."""
+        found: dict[int, SX] = {}
+        for layout, side in zip(self.layouts, junction.sides, strict=True):
+            for i, column in enumerate(layout.shared().columns.tolist()):
+                found.setdefault(column, side.shared.symbols[i])
+        return _Inputs(ca.vertcat(SX(0, 1), *found.values()), list(found), SX(0, 1), ())
+
+    def _linkages(self, junction: Junction) -> list[_Row]:
+        return [
+            _row(linkage, junction.linkages[i]) for i, linkage in enumerate(self.model.linkages)
         ]
-    )
-    places = [_lift(variables, *named[place], float(start[place])) for place in use.lifted]
-    totals = _Known(_pick(integrals, use.lifted), places)
-    groups = [
-        _group(index, [side.known, _once([times]), totals], rows, SX(1 + len(lifted), 1))
-        for index, (side, times, rows) in enumerate(zip(sides, shared, own, strict=True))
-        if rows
-    ]
-    direct = _pick(integrals, use.direct)
-    sums = ca.vertcat(ca.substitute(objective, direct, SX.zeros(*direct.shape)), -totals.symbols)
-    known = [*(side.known for side in sides), _once(shared), totals]
-    weights = use.weights([len(phase.integrals) for phase in model.phases])
-    return Joint((*groups, _group(None, known, links, sums)), weights, lifted)
+
+    def _lift(
+        self,
+        lifted: Sequence[tuple[str, int]],
+        guesses: Sequence[Trajectory],
+        statics: Sequence[float],
+    ) -> list[int]:
+        """Variables for lifted integrals."""
+        start = {
+            index: dict(
+                zip(
+                    self.model.phases[index].integrals,
+                    self._guessed(index, guesses[index], statics),
+                    strict=True,
+                )
+            )
+            for index in {index for _, index in lifted}
+        }
+        return [
+            _variable(self.variables, name, index, float(start[index][name]))
+            for name, index in lifted
+        ]
+
+    def _guessed(self, index: int, guess: Trajectory, statics: Sequence[float]) -> Array:
+        layout = self.layouts[index]
+        functions = functions_of(layout.shape, eliminate=layout.transcription.eliminates)
+        return guessed_integrals(layout.phase, functions, guess, [*statics, *layout.constants])
+
+
+def _inputs(layout: PhaseLayout, side: Side, unknowns: Sequence[int]) -> _Inputs:
+    """The end segments' variables, and the constants of these."""
+    ends = layout.ends()
+    columns = [column for strip, at in ends for column in strip.columns()[:, at].tolist()]
+    places = [place for strip, at in ends for place in strip.places[:, at].tolist()]
+    values = [*places, *layout.shared().values.tolist()]
+    return _Inputs(side.variables, [*columns, *unknowns], side.constants, values)
 
 
 def _group(
-    phase: int | None, known: Sequence[_Known], rows: Sequence[_Row], sums: SX
+    phase: int | None, known: Sequence[_Inputs], rows: Sequence[_Row], sums: SX
 ) -> StageGroup:
     columns = [column for one in known for column in one.columns]
+    values = [value for one in known for value in one.values]
     return StageGroup(
         phase=phase,
-        variables=ca.vertcat(*(one.symbols for one in known)),
-        constants=SX(0, 1),
+        variables=ca.vertcat(*(one.variables for one in known)),
+        constants=ca.vertcat(*(one.constants for one in known)),
         columns=np.array(columns, dtype=int)[:, None],
-        data=np.empty((0, 1)),
+        data=np.array(values, dtype=float)[:, None],
         rows=_stacked(rows),
         sums=sums,
     )
 
 
-def _one_of_each(shared: Sequence[Shared]) -> list[Shared]:
-    """The same with one symbol for each variable, over all phases."""
-    symbols: dict[int, SX] = {}
-    unified = []
-    for one in shared:
-        own = [symbols.setdefault(column, one.symbols[i]) for i, column in enumerate(one.columns)]
-        fresh = ca.vertcat(SX(0, 1), *own)
-        start, end, statics = ca.substitute(
-            [one.times.start, one.times.end, one.statics], [one.symbols], [fresh]
-        )
-        unified.append(Shared(TimeSymbols(start, end), statics, fresh, one.columns))
-    return unified
+def _row(row: Constraint, value: SX) -> _Row:
+    return _Row(row.label, value, row.limits)
 
 
-def _once(shared: Sequence[Shared]) -> _Known:
-    """Times and statics, each once."""
-    found = {int(column): one.symbols[i] for one in shared for i, column in enumerate(one.columns)}
-    return _Known(ca.vertcat(SX(0, 1), *found.values()), list(found))
-
-
-def _phase_ends(
-    index: int,
-    layout: PhaseLayout,
-    shared: Shared,
-    functions: PhaseFunctions,
-    variables: Variables,
-) -> _PhaseEnds:
-    """The ends as the transcription completes them, over all variables of both end segments."""
-    sides = [
-        (
-            symbolic_stage(strip, shared, SX(strip.places[:, segment]), functions),
-            strip.columns()[:, segment].tolist(),
-        )
-        for strip, segment in layout.ends()
-    ]
-    (first, columns), (last, more) = sides
-    start, own = first.collocation.points[0], _own_unknowns(index, layout, variables)
-    count = len(own.columns)
-    rest = _pick(start.z, range(count, start.z.numel()))
-    start = replace(start, z=ca.vertcat(own.symbols, rest))
-    ends = Ends(
-        initial=first.place(start),
-        final=last.place(last.collocation.points[-1]),
-        integrals=SX.sym("integral", len(layout.phase.integrals)),
-    )
-    known = _Known(ca.vertcat(first.own, last.own, own.symbols), [*columns, *more, *own.columns])
-    return _PhaseEnds(ends, known, first.at(functions.path, start), count)
-
-
-def _own_unknowns(index: int, layout: PhaseLayout, variables: Variables) -> _Known:
-    """Unknowns at the phase's start where the method has none there: else they were guessed.
-
-    They start from those of the next node.
-    """
-    (strip, segment), _ = layout.ends()
-    names = layout.phase.form.algebraic
-    if layout.transcription.shares_controls or layout.transcription.eliminates or not names:
-        return _Known(SX(0, 1), [])
-    beside = strip.blocks["algebraic"][1][: len(names), segment]
-    guess, scale = (variables.gather(name)[beside] for name in ("guess", "scale"))
-    open_sides = (np.full((1, 1), -np.inf), np.full((1, 1), np.inf))
-    block = variables.add(index, names, np.zeros(1), open_sides, guess[:, None], scale)
-    return _Known(SX.sym("unknown", len(names)), block[:, 0].tolist())
-
-
-def _pick(symbols: SX, positions: Sequence[int]) -> SX:
-    return ca.vertcat(SX(0, 1), *(symbols[i] for i in positions))
-
-
-def _values(rows: Sequence[_Row]) -> SX:
-    return ca.vertcat(SX(0, 1), *(row.value for row in rows))
-
-
-def _row(row: Constraint, scope: Mapping[str, SX]) -> _Row:
-    return _Row(row.label, evaluate(row.tree, scope), row.limits)
-
-
-def _rows(layout: PhaseLayout, side: _PhaseEnds, scope: Mapping[str, SX]) -> list[_Row]:
-    rows = [_row(row, scope) for row in layout.phase.boundary]
+def _rows(layout: PhaseLayout, side: Side, unknowns: int) -> list[_Row]:
+    rows = [_row(row, side.boundary[i]) for i, row in enumerate(layout.phase.boundary)]
     if (limits := _duration(layout)) is not None:
-        rows.append(_Row("duration", side.ends.final.t - side.ends.initial.t, limits))
-    return [*rows, *_at_start(layout, side)]
+        rows.append(_Row("duration", side.duration, limits))
+    return [*rows, *_at_start(layout, side, unknowns)]
 
 
 def _duration(layout: PhaseLayout) -> Interval | None:
@@ -224,7 +210,7 @@ def _duration(layout: PhaseLayout) -> Interval | None:
     return Interval(max(least, _SHORTEST), max(most, _SHORTEST))
 
 
-def _at_start(layout: PhaseLayout, side: _PhaseEnds) -> list[_Row]:
+def _at_start(layout: PhaseLayout, side: Side, unknowns: int) -> list[_Row]:
     """Limits at the start of controls and path, where the method has no control there.
 
     Bounds that hold all along are in the method's hull already. Equalities along the path are left
@@ -240,13 +226,13 @@ def _at_start(layout: PhaseLayout, side: _PhaseEnds) -> list[_Row]:
     ]
     path = [
         _Row(row.label, side.path[i], row.limits, 0.0)
-        for i, row in enumerate([*phase.path, *phase.held[: side.unknowns]])
+        for i, row in enumerate([*phase.path, *phase.held[:unknowns]])
         if i >= len(phase.path) or not row.limits.fixed
     ]
     return [*controls, *path]
 
 
-def _lift(variables: Variables, name: str, phase: int, guess: float) -> int:
+def _variable(variables: Variables, name: str, phase: int, guess: float) -> int:
     open_sides = (np.full((1, 1), -np.inf), np.full((1, 1), np.inf))
     scale, start = np.array([max(1.0, abs(guess))]), np.full((1, 1), guess)
     block = variables.add(
@@ -257,7 +243,7 @@ def _lift(variables: Variables, name: str, phase: int, guess: float) -> int:
 
 def _stacked(rows: Sequence[_Row]) -> Rows:
     return Rows(
-        _values(rows),
+        ca.vertcat(SX(0, 1), *(row.value for row in rows)),
         tuple(row.name for row in rows),
         np.array([row.limits.lower for row in rows]),
         np.array([row.limits.upper for row in rows]),

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
-from solver.expressions import SX
+from solver.expressions import SX, scalars
 from solver.model import Phase
 from solver.model.drift import drift_names
 from solver.model.symbolic import PhaseFunctions
@@ -28,11 +28,6 @@ class IntegralUse:
     factors: Array
     lifted: tuple[int, ...]
 
-    @property
-    def direct(self) -> tuple[int, ...]:
-        """Positions of those that are added up in place."""
-        return tuple(i for i in range(len(self.factors)) if i not in self.lifted)
-
     def weights(self, counts: Sequence[int]) -> list[Array]:
         """What each phase's integrals add to the sums: one array (sums, integrals) per phase."""
         total = np.zeros((1 + len(self.lifted), len(self.factors)))
@@ -42,21 +37,45 @@ class IntegralUse:
         return np.split(total, np.cumsum(counts)[:-1], axis=1)
 
 
-def classify(objective: SX, constraints: SX, integrals: SX) -> IntegralUse:
+@dataclass(frozen=True, slots=True)
+class Sorted:
+    """Which integrals are lifted, and the others' factors as a function of the constants."""
+
+    lifted: tuple[int, ...]
+    factors: ca.Function
+
+    @property
+    def direct(self) -> tuple[int, ...]:
+        """Positions of those that are added up in place."""
+        return tuple(i for i in range(self.factors.numel_out(0)) if i not in self.lifted)
+
+    def use(self, constants: Sequence[float]) -> IntegralUse:
+        """With the constants' values."""
+        return IntegralUse(self.factors(ca.DM(constants)).full().ravel(), self.lifted)
+
+
+def classify(objective: SX, constraints: SX, integrals: SX, constants: SX) -> Sorted:
     """Which integrals can be added up in place, and with what factor."""
     slopes = ca.densify(ca.gradient(objective, integrals))
     constrained = ca.which_depends(constraints, integrals, 1, False)
-    lifted = tuple(i for i in range(integrals.numel()) if constrained[i] or ca.symvar(slopes[i]))
-    factors = [0.0 if i in lifted else float(ca.evalf(slopes[i])) for i in range(integrals.numel())]
-    return IntegralUse(np.array(factors), lifted)
+    known = {one.element_hash() for one in scalars(constants)}
+    lifted = tuple(
+        i
+        for i in range(integrals.numel())
+        if constrained[i] or any(one.element_hash() not in known for one in ca.symvar(slopes[i]))
+    )
+    factors = [SX(0) if i in lifted else slopes[i] for i in range(integrals.numel())]
+    outputs = ca.vertcat(SX(0, 1), *factors)
+    return Sorted(lifted, ca.Function("factors", [constants], [outputs]))
 
 
 def guessed_integrals(
-    phase: Phase, functions: PhaseFunctions, guess: Trajectory, statics: Sequence[float]
+    phase: Phase, functions: PhaseFunctions, guess: Trajectory, numbers: Sequence[float]
 ) -> Array:
     """The integrals (integrals,) along a guess, by the trapezoid rule.
 
-    1 where that gives zero or no number: roots and quotients of integrals need a slope there.
+    ``numbers`` are those of the statics, then the phase's constants. 1 where that gives zero or no
+    number: roots and quotients of integrals need a slope there.
     """
     fractions = np.linspace(0.0, 1.0, _SAMPLES)
     times = guess.start + (guess.end - guess.start) * fractions
@@ -66,7 +85,7 @@ def guessed_integrals(
         guess.sample(names, fractions)
         for names in (phase.states, phase.controls, algebraic, phase.natives)
     ]
-    constants = np.repeat(np.array(statics, dtype=float)[:, None], _SAMPLES, axis=1)
+    constants = np.repeat(np.array(numbers, dtype=float)[:, None], _SAMPLES, axis=1)
     integrands = functions.integrands.map(_SAMPLES)(*series, times[None, :], constants).full()
     with np.errstate(all="ignore"):  # poles on both sides of nothing
         totals = np.trapezoid(integrands, times, axis=1)

@@ -6,19 +6,16 @@ share the variables of their common knots.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Literal
 
-import casadi as ca
 import numpy as np
 
-from solver.expressions import SX
+from solver.frozen import frozen
 from solver.mesh import Mesh
 from solver.model import Interval, Phase
+from solver.model.shape import PhaseShape
 from solver.nlp.variables import Array, Indices
+from solver.transcribe.stage import KINDS, Kind, Stage, StageShape, TimeKind, stage_of
 from solver.transcriptions.base import Transcription
-
-Kind = Literal["state", "control", "algebraic", "native", "drift"]
-KINDS: tuple[Kind, ...] = ("state", "control", "algebraic", "native", "drift")
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,28 +27,16 @@ class Edge:
 
 
 @dataclass(frozen=True, slots=True)
-class TimeSymbols:
-    """A phase's two times in one stage function."""
-
-    start: SX
-    end: SX
-
-    def at(self, fraction: SX) -> SX:
-        """The time at a fraction of the duration."""
-        return self.start + (self.end - self.start) * fraction
-
-
-@dataclass(frozen=True, slots=True)
 class Shared:
-    """What all stages of a phase share in one stage function: its times, the statics.
+    """What all stages of a phase share, as numbers to its symbols (``stage.SharedSymbols``).
 
-    ``symbols`` stacks what are variables, those at ``columns``.
+    ``columns`` are the variables behind the free times and the statics; ``values`` are those of
+    the fixed times that are not zero and of the phase's constants.
     """
 
-    times: TimeSymbols
-    statics: SX
-    symbols: SX
+    times: tuple[TimeKind, TimeKind]
     columns: Indices
+    values: Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +50,8 @@ class Strip:
     where
         Which segments of the phase they are, shape (segments of the strip,).
     places
-        Where each starts in the phase and how wide it is, fractions of the duration, (2, n).
+        Where each starts in the phase, how wide it is, and how wide the one before it:
+        fractions of the duration, (3, n).
     blocks
         Kind of variable -> one array (names, n) per node, empty (0, n) where the node carries no
         variable of this kind.
@@ -90,7 +76,7 @@ class Strip:
 
     def fractions(self, nodes: Array) -> Array:
         """Where nodes in [0, 1] of every segment lie in the phase: (segments, nodes)."""
-        start, width = self.places
+        start, width, _ = self.places
         return np.asarray(start[:, None] + width[:, None] * nodes[None, :])
 
 
@@ -109,6 +95,8 @@ class PhaseLayout:
         Indices of the problem's statics.
     state_scale
         Typical sizes of the states, shape (states,).
+    shape, constants
+        What the phase's functions are built from, and the numbers to be put into them.
     """
 
     phase: Phase
@@ -120,28 +108,43 @@ class PhaseLayout:
     end: Edge
     statics: tuple[int, ...]
     state_scale: Array
+    shape: PhaseShape
+    constants: tuple[float, ...]
 
     def knot_columns(self) -> Indices:
         """What is shared at the knots, (variables, segments + 1)."""
         return np.concatenate([self.knots[kind] for kind in KINDS])
 
     def shared(self) -> Shared:
-        """New symbols for times and statics; numbers for fixed times."""
-        symbols: dict[int, SX] = {}
-
-        def time(edge: Edge) -> SX:
-            if edge.index is None:
-                return SX(edge.limits.lower)
-            return symbols.setdefault(edge.index, SX.sym("time"))
-
-        times = TimeSymbols(time(self.start), time(self.end))
-        statics = SX.sym("static", len(self.statics))
+        """Where its variables stand, and the numbers of its constants."""
+        edges = (self.start, self.end)
+        free = [edge.index for edge in edges if edge.index is not None]
+        times = [edge.limits.lower for edge in edges if edge.index is None]
         return Shared(
-            times,
-            statics,
-            ca.vertcat(SX(0, 1), *symbols.values(), statics),
-            np.array([*symbols, *self.statics], dtype=int),
+            (_kind(self.start), _kind(self.end)),
+            np.array([*free, *self.statics], dtype=int),
+            np.array([*(time for time in times if time != 0), *self.constants]),
         )
+
+    def stage_shape(self, strip: "Strip") -> StageShape:
+        """What the symbols of a strip's segments are built from."""
+        sizes = tuple(
+            tuple(len(strip.blocks[kind][node]) for kind in KINDS)
+            for node in range(len(strip.transcription.nodes))
+        )
+        method = strip.transcription
+        return StageShape(
+            phase=self.shape,
+            method=frozen(method),
+            eliminates=method.eliminates,
+            shares_controls=method.shares_controls,
+            sizes=sizes,
+            times=self.shared().times,
+        )
+
+    def stage(self, strip: "Strip") -> Stage:
+        """The symbols of a strip's segments."""
+        return stage_of(self.stage_shape(strip), strip.transcription)
 
     def ends(self) -> tuple[tuple[Strip, int], tuple[Strip, int]]:
         """The strips of the first and of the last segment, and the segments' places in them."""
@@ -156,10 +159,16 @@ class PhaseLayout:
         raise LookupError(f"segment {segment} is in no strip")
 
 
+def _kind(edge: Edge) -> TimeKind:
+    if edge.index is not None:
+        return "free"
+    return "zero" if edge.limits.lower == 0 else "fixed"
+
+
 def strips_of(transcription: Transcription, mesh: Mesh) -> Sequence[tuple[Transcription, Indices]]:
-    """The segments of each kind: one strip, or one for each number of collocation points."""
+    """The segments of each kind: as the method has them, or by number of collocation points."""
     if mesh.degrees is None:
-        return [(transcription, np.arange(mesh.segments))]
+        return transcription.strips(mesh.segments)
     return [
         (transcription.at_degree(int(degree)), np.flatnonzero(mesh.degrees == degree))
         for degree in np.unique(mesh.degrees)

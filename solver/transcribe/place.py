@@ -9,16 +9,19 @@ from schemas.expressions import split
 from solver.mesh import Mesh
 from solver.model import OPEN, Interval, Phase, Static
 from solver.model.drift import drift_names
+from solver.model.shape import PhaseShape
 from solver.nlp.scaling import typical_size
 from solver.nlp.variables import Array, Indices, Variables
 from solver.trajectory import Trajectory
-from solver.transcribe.layout import KINDS, Edge, Kind, PhaseLayout, Strip, strips_of
+from solver.transcribe.layout import Edge, PhaseLayout, Strip, strips_of
+from solver.transcribe.stage import KINDS, Kind
 from solver.transcriptions.base import Node, Transcription
 
 Limits = Mapping[str, Interval]
 
 _DENSE = np.linspace(0.0, 1.0, 5)
 _SHORTEST = 1e-3  # s: of a guess
+_EARLY = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +53,8 @@ class Placer:
     transcription: Transcription
     statics: tuple[int, ...]
     before: Edge | None
+    shape: PhaseShape
+    constants: tuple[float, ...]
 
     def place(self) -> PhaseLayout:
         """Add times, knots and inner nodes; where they stand."""
@@ -83,6 +88,8 @@ class Placer:
             end,
             self.statics,
             quantities["state"].scale,
+            self.shape,
+            self.constants,
         )
 
     def _times(self) -> tuple[Edge, Edge]:
@@ -179,12 +186,20 @@ class Placer:
             kind: tuple(at_node(kind, i, node) for i, node in enumerate(transcription.nodes))
             for kind in KINDS
         }
-        return Strip(transcription, where, np.stack([starts, widths]), blocks)
+        places = np.stack([starts, widths, self._widths_before()[where]])
+        return Strip(transcription, where, places, blocks)
+
+    def _widths_before(self) -> Array:
+        """How wide the segment before each is; nothing comes before the first but in a period."""
+        widths = np.diff(self.mesh.knots)
+        return np.concatenate([widths[-1:] if self.phase.wraps else [0.0], widths[:-1]])
 
     def _block(self, quantity: _Quantity, where: Array) -> Indices:
         """Variables at some places; with the ends' limits at the phase's ends."""
         names = quantity.names
-        guess = self.guess.sample(names, where)
+        # What is constant in a time step is the value at its end, not at the start of the next.
+        early = 1 - _EARLY if self.transcription.stepped else 1.0
+        guess = self.guess.sample(names, where * early)
         lower, upper = (np.empty_like(guess) for _ in range(2))
         for row, name in enumerate(names):
             lower[row], upper[row] = quantity.along[name]

@@ -10,200 +10,166 @@ from solver.expressions import SX
 from solver.lowering import Form
 from solver.model import Constraint, Interval
 from solver.model.drift import drift_names, held_labels
+from solver.model.shape import PhaseShape
 from solver.model.symbolic import PhaseFunctions, Place, path_rows
+from solver.nlp.kept import Kept
 from solver.nlp.stages import Rows, StageGroup
 from solver.nlp.variables import Array, Indices
-from solver.transcribe.layout import KINDS, PhaseLayout, Shared, Strip
-from solver.transcriptions.base import Collocation, Point, Segment
-
-
-@dataclass(frozen=True, slots=True)
-class SymbolicStage:
-    """A segment in symbols, completed by the transcription; ``own`` are its variables."""
-
-    own: SX
-    h: SX
-    collocation: Collocation
-    functions: PhaseFunctions
-    statics: SX
-
-    def place(self, point: Point) -> Place:
-        """A point of the segment as the functions take it."""
-        return Place(point.x, point.u, point.z, point.natives, point.t, self.statics)
-
-    def at(self, function: ca.Function, point: Point) -> SX:
-        """A function's value at a point of the segment."""
-        return SX(function(*self.place(point).arguments()))
-
-    def quadrature(self) -> SX:
-        """The integrals over the segment, by the transcription's own rule."""
-        terms = [
-            weight * self.at(self.functions.integrands, point)
-            for weight, point in self.collocation.quadrature
-        ]
-        return self.h * sum(terms[1:], start=terms[0])
-
-
-def symbolic_stage(
-    strip: Strip, shared: Shared, place: SX, functions: PhaseFunctions
-) -> SymbolicStage:
-    """A segment's symbols, completed by the transcription.
-
-    ``place`` (2,) is where it starts in the phase and its width, as fractions of the duration.
-    """
-    fraction, width = ca.vertsplit(place)
-    times, blocks = shared.times, strip.blocks
-    own = [
-        [SX.sym(kind, len(blocks[kind][i])) for kind in KINDS]
-        for i in range(len(strip.transcription.nodes))
-    ]
-    still = SX.zeros(len(blocks["drift"][-1]), 1)  # nothing drifts at a segment's start
-    points = tuple(
-        Point(
-            x,
-            u,
-            ca.vertcat(z, drift if i else still),
-            times.at(fraction + node.fraction * width),
-            natives,
-        )
-        for i, (node, (x, u, z, natives, drift)) in enumerate(
-            zip(strip.transcription.nodes, own, strict=True)
-        )
-    )
-    h = (times.end - times.start) * width
-
-    def derivative(point: Point) -> SX:
-        return SX(functions.derivatives(*_arguments(point, shared.statics)))
-
-    def flow(natives: SX, t: SX) -> SX:
-        return SX(functions.flow(natives, t, shared.statics))
-
-    collocation = strip.transcription.collocate(Segment(points, h, derivative, flow))
-    stacked = ca.vertcat(*(part for parts in own for part in parts))
-    return SymbolicStage(stacked, h, collocation, functions, shared.statics)
-
-
-def _arguments(point: Point, statics: SX) -> list[SX]:
-    return Place(point.x, point.u, point.z, point.natives, point.t, statics).arguments()
+from solver.transcribe.layout import PhaseLayout, Shared, Strip
+from solver.transcribe.stage import KINDS, Stage, TimeKind, functions_of, shared_symbols
+from solver.transcriptions.base import Collocation
 
 
 def segment_group(
-    index: int, layout: PhaseLayout, strip: Strip, functions: PhaseFunctions, weights: Array
+    index: int, layout: PhaseLayout, strip: Strip, weights: Array
 ) -> tuple[StageGroup, ca.Function]:
     """Defects, quadrature, and constraints at nodes inside of the segments.
 
     ``weights`` (sums, integrals) says what each integral adds to each sum of the program. With
-    the group comes the function that reads its segments out: variables, constants -> x, f, u, z
-    (names, nodes), and the integrals; z is zero at nodes without algebraic variables.
+    the group comes the function that reads its segments out (``Stage.nodes``).
     """
-    place, shared = SX.sym("place", 2), layout.shared()
-    stage = symbolic_stage(strip, shared, place, functions)
-    integrals = stage.quadrature()
-    sums = ca.mtimes(ca.DM(weights), integrals) if weights.size else SX(len(weights), 1)
+    stage, shared = layout.stage(strip), layout.shared()
+    symbols, sums, numbers = stage.sums(weights)
     group = StageGroup(
         phase=index,
-        variables=ca.vertcat(stage.own, shared.symbols),
-        constants=place,
+        variables=stage.variables,
+        constants=ca.vertcat(stage.constants, symbols),
         columns=_with_shared(strip.columns(), shared),
-        data=strip.places,
+        data=_with_constants(strip.places, [*shared.values, *numbers]),
         rows=_segment_rows(layout, strip, stage),
         sums=sums,
     )
-    points = stage.collocation.points
-    outputs = [
-        ca.horzcat(*(point.x for point in points)),
-        ca.horzcat(*(stage.at(functions.derivatives, point) for point in points)),
-        ca.horzcat(*(point.u for point in points)),
-        ca.horzcat(*(point.z for point in points)),
-        integrals,
-    ]
-    return group, ca.Function("nodes", [group.variables, place], outputs)
+    return group, stage.nodes(symbols)
 
 
-def knot_group(
-    index: int, layout: PhaseLayout, functions: PhaseFunctions, sums: int
-) -> list[StageGroup]:
+def _with_constants(data: Array, values: Sequence[float]) -> Array:
+    """Numbers that are the same at all stages, below those of each."""
+    same = np.array(values, dtype=float)[:, None]
+    return np.concatenate([data, np.repeat(same, data.shape[1], axis=1)])
+
+
+@dataclass(frozen=True, slots=True)
+class _Knot:
+    """A shared knot in symbols, and the values of the constraints there."""
+
+    variables: SX
+    constants: SX
+    path: SX
+
+
+def knot_group(index: int, layout: PhaseLayout, sums: int) -> list[StageGroup]:
     """Path constraints at shared knots; nothing where there are none of either."""
-    transcription = layout.transcription
-    path = path_rows(layout.phase, eliminate=transcription.eliminates)
-    which = [i for i in range(len(path)) if i not in functions.native_rows]
-    if not which or not transcription.shares_controls:
+    eliminate = layout.transcription.eliminates
+    path = path_rows(layout.phase, eliminate=eliminate)
+    if not path or not layout.transcription.shares_controls:
         return []
-    shared, fraction = layout.shared(), SX.sym("fraction")
-    x, u, z, *_ = (SX.sym(kind, len(layout.knots[kind])) for kind in KINDS)
-    natives = SX.zeros(len(layout.phase.natives), 1)  # no row of these uses them
-    whole = ca.vertcat(z, SX.zeros(len(drift_names(layout.phase.form)), 1))  # nor those
-    place = Place(x, u, whole, natives, shared.times.at(fraction), shared.statics)
+    functions = functions_of(layout.shape, eliminate=eliminate)
+    which = [i for i in range(len(path)) if i not in functions.native_rows]
+    if not which:
+        return []
+    shared, sizes = layout.shared(), tuple(len(layout.knots[kind]) for kind in KINDS)
+    key = (layout.shape, eliminate, sizes, shared.times)
+    knot = _KNOTS.get(key, lambda: _knot(layout.shape, functions, sizes, shared.times))
     knots = layout.mesh.knots[None, :]
-    rows = _path_rows(path, which, SX(functions.path(*place.arguments())), knots)
+    rows = _path_rows(path, which, knot.path, knots)
     columns = _with_shared(layout.knot_columns(), shared)
-    variables = ca.vertcat(x, u, z, shared.symbols)
-    return [StageGroup(index, variables, fraction, columns, knots, rows, SX(sums, 1))]
+    data = _with_constants(knots, shared.values.tolist())
+    none = SX(sums, 1)
+    return [StageGroup(index, knot.variables, knot.constants, columns, data, rows, none)]
+
+
+def _knot(
+    shape: PhaseShape,
+    functions: PhaseFunctions,
+    sizes: Sequence[int],
+    times: tuple[TimeKind, TimeKind],
+) -> _Knot:
+    shared, fraction = shared_symbols(shape, times), SX.sym("fraction")
+    x, u, z, *_ = (SX.sym(kind, size) for kind, size in zip(KINDS, sizes, strict=True))
+    natives = SX.zeros(len(shape.natives), 1)  # no row of these uses them
+    whole = ca.vertcat(z, SX.zeros(len(drift_names(shape)), 1))  # nor those
+    place = Place(x, u, whole, natives, shared.times.at(fraction), shared.p)
+    return _Knot(
+        ca.vertcat(x, u, z, shared.symbols),
+        ca.vertcat(fraction, shared.constants),
+        SX(functions.path(*place.arguments())),
+    )
+
+
+_KNOTS: Kept[_Knot] = Kept(100_000, lambda knot: int(ca.n_nodes(knot.path)))
 
 
 def _with_shared(columns: Indices, shared: Shared) -> Indices:
     return np.concatenate([columns, np.repeat(shared.columns[:, None], columns.shape[1], axis=1)])
 
 
-def _segment_rows(layout: PhaseLayout, strip: Strip, stage: SymbolicStage) -> Rows:
+def _segment_rows(layout: PhaseLayout, strip: Strip, stage: Stage) -> Rows:
     transcription, collocation = strip.transcription, stage.collocation
     parts = [_defect_rows(layout, strip, collocation)]
     path = path_rows(layout.phase, eliminate=transcription.eliminates)
-    plain = [i for i in range(len(path)) if i not in stage.functions.native_rows]
+    native = stage.functions.native_rows
+    plain = [i for i in range(len(path)) if i not in native]
     last = len(transcription.nodes) - 1
     for index, (node, point) in enumerate(
         zip(transcription.nodes, collocation.points, strict=True)
     ):
         where = strip.fractions(np.array([node.fraction])).T
-        values = stage.at(stage.functions.path, point)
-        parts.append(_path_rows(path, sorted(stage.functions.native_rows), values, where))
         at_knot = index in (0, last)
-        if at_knot and (transcription.shares_controls or not node.control):
-            continue
-        parts.append(_path_rows(path, plain, values, where))
-        if not node.state:
+        once = at_knot and (transcription.shares_controls or not node.control)
+        which = [*sorted(native), *([] if once else plain)]
+        if which:
+            parts.append(_path_rows(path, which, stage.path(index), where))
+        if not once and not node.state:
             parts.append(_bound_rows(layout, layout.phase.states, point.x, where))
     middle = strip.fractions(np.array([0.5])).T
     parts += [
         _bound_rows(layout, layout.phase.controls, corner, middle, of_nodes=True)
         for corner in collocation.hull
     ]
+    parts.append(
+        _rows(
+            [row.label for row in collocation.rows],
+            [row.value for row in collocation.rows],
+            [Interval(row.lower, row.upper) for row in collocation.rows],
+            middle,
+        )
+    )
     if len(strip.blocks["drift"][-1]):
         parts += _held_rows(layout.phase.form, strip, stage)
     return _stacked([part for part in parts if part.names] or parts[:1])
 
 
-def _held_rows(form: Form, strip: Strip, stage: SymbolicStage) -> list[Rows]:
+def _held_rows(form: Form, strip: Strip, stage: Stage) -> list[Rows]:
     """What contacts and loops hold, at every node but the first.
 
     Places that are not anchored are those at the segment's start: from knot to knot these agree.
     """
-    held, points = form.holonomic, stage.collocation.points
+    held = form.holonomic
     places = [one for one in held if one.place is not None]
-    moving = SX([0.0 if one.anchored else 1.0 for one in places] + [0.0] * len(held))
-    start = stage.at(stage.functions.held, points[0]) * moving
+    moving = (*(not one.anchored for one in places), *(False for _ in held))
     labels, zero = held_labels(held), Interval(0.0, 0.0)
     return [
         _rows(
             labels,
-            ca.vertsplit(stage.at(stage.functions.held, point) - start),
+            ca.vertsplit(stage.held(number, moving)),
             [zero] * len(labels),
             strip.fractions(np.array([node.fraction])).T,
         )
-        for node, point in zip(strip.transcription.nodes[1:], points[1:], strict=True)
+        for number, node in enumerate(strip.transcription.nodes[1:], start=1)
     ]
 
 
 def _defect_rows(layout: PhaseLayout, strip: Strip, collocation: Collocation) -> Rows:
     count = collocation.defects.numel()
-    repeats = count // len(layout.phase.states)
+    names = layout.phase.states[:count]  # of time steps, some states have none
+    repeats = count // len(names) if names else 0
     middles = strip.fractions(np.array([0.5])).T
     return Rows(
         collocation.defects,
-        tuple(f"defect {name}" for name in layout.phase.states) * repeats,
+        tuple(f"defect {name}" for name in names) * repeats,
         np.zeros(count),
         np.zeros(count),
-        np.tile(layout.state_scale, repeats),
+        np.tile(layout.state_scale[: len(names)], repeats),
         np.repeat(middles, count, axis=0),
     )
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
-from schemas.methods import Method
+from schemas.methods import ContactImplicit, Method
 from schemas.phases import Phase
 from schemas.problem import Problem
 from solver.mesh import Mesh
@@ -13,6 +13,7 @@ from solver.transcriptions.dircol5i import DirCol5i
 from solver.transcriptions.hermite_simpson import HermiteSimpson
 from solver.transcriptions.multiple_shooting import MultipleShooting
 from solver.transcriptions.radau import Radau
+from solver.transcriptions.time_steps import BackwardEuler, DiscreteGradient, TimeStep
 from solver.transcriptions.trapezoidal import Trapezoidal
 
 TRANSCRIPTIONS: Mapping[str, type[Transcription]] = {
@@ -24,6 +25,12 @@ TRANSCRIPTIONS: Mapping[str, type[Transcription]] = {
     "dircol5i": DirCol5i,
 }
 """The method's kind -> its transcription; the schema's other fields are its arguments."""
+
+STEPS: Mapping[str, type[TimeStep]] = {
+    "discrete_gradient": DiscreteGradient,
+    "backward_euler": BackwardEuler,
+}
+"""The discretisation of a contact-implicit method -> its transcription."""
 
 
 def make_transcriptions(problem: Problem) -> list[Transcription]:
@@ -38,7 +45,10 @@ def _transcription(phase: Phase, method: Method) -> Transcription:
 
 
 def make_transcription(method: Method) -> Transcription:
-    """The transcription of a method."""
+    """The transcription of a method; of a contact-implicit one that of its steps."""
+    if isinstance(method, ContactImplicit):
+        kind = STEPS[method.discretisation or "discrete_gradient"]
+        return kind(pairwise=method.steps == "pairwise")
     options = method.model_dump(exclude={"kind", "segments"})
     return TRANSCRIPTIONS[method.kind](**options)
 

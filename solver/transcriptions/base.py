@@ -8,6 +8,7 @@ enrol it from there.
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 from solver.expressions import SX
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.int_]
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,18 +49,34 @@ class Point:
     natives: SX = field(default_factory=lambda: SX(0, 1))
 
 
+class StepRow(NamedTuple):
+    """A row of a whole step: its label, its value, its limits."""
+
+    label: str
+    value: SX
+    lower: float = 0.0
+    upper: float = 0.0
+
+
+def _no_step(*_: object) -> tuple[SX, tuple[StepRow, ...]]:
+    raise TypeError("this phase has no balance of steps")
+
+
 @dataclass(frozen=True, slots=True)
 class Segment:
     """A segment as symbols. Of its points, what carries no variable is empty.
 
     ``derivative`` gives the rates of the states at a point; ``flow`` the states of a closed form
-    at a time, from its natives.
+    at a time, from its natives; ``step`` the balance of momentum between two points, and rows of
+    its own (``solver.discrete``), given the lengths of the step before and of this one
+    over those of the mesh.
     """
 
     points: tuple[Point, ...]
     h: SX
     derivative: Callable[[Point], SX]
     flow: Callable[[SX, SX], SX]
+    step: Callable[[Point, Point, SX, SX], tuple[SX, tuple[StepRow, ...]]] = _no_step
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,12 +95,15 @@ class Collocation:
     hull
         Controls (n_u,) whose bounds, with those at the knots, keep the whole curve within them;
         of methods whose controls would pass their bounds between the nodes.
+    rows
+        Further rows.
     """
 
     points: tuple[Point, ...]
     defects: SX
-    quadrature: tuple[tuple[float, Point], ...]
+    quadrature: tuple[tuple[float | SX, Point], ...]
     hull: tuple[SX, ...] = ()
+    rows: tuple[StepRow, ...] = ()
 
 
 class Transcription(ABC):
@@ -113,6 +134,9 @@ class Transcription(ABC):
         between the nodes, where there are no variables for them.
     rigid
         Whether the mesh is not to be refined.
+    stepped
+        Whether segments are time steps through contact: forces belong to a whole step, and the
+        mesh is judged by what the steps dissipate.
     """
 
     order: int | None
@@ -124,6 +148,11 @@ class Transcription(ABC):
     native: bool = False
     eliminates: bool = False
     rigid: bool = False
+    stepped: bool = False
+
+    def strips(self, segments: int) -> list[tuple["Transcription", Indices]]:
+        """Segments of one kind each: which they are, where the method has several kinds."""
+        return [(self, np.arange(segments))]
 
     def at_degree(self, points: int) -> "Transcription":
         """The same method with so many collocation points a segment, where that can be chosen."""

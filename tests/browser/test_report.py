@@ -184,3 +184,28 @@ def test_the_picture_opens_as_an_image(
     size = page.evaluate("[document.images[0].naturalWidth, document.images[0].complete]")
     assert size == [960, True]
     assert complaints == []
+
+
+def test_modes_are_bars_over_time_and_a_kick_is_seen(
+    result: Result, page: Page, tmp_path: Path, complaints: list[str]
+) -> None:
+    spans = [(0.0, 1.0, {"toe": "sticking"}), (1.0, 1.001, {"toe": "sliding_left"}), (1.001, 2, {})]
+    sequence = {
+        "contacts": ["toe"],
+        "modes": [{"start": a, "end": b, "contacts": contacts} for a, b, contacts in spans],
+        "distinct": 3,
+        "possible": 4,
+    }
+    path = tmp_path / "modes.html"
+    path.write_text(render(result.document | {"mode_sequence": sequence}), encoding="utf-8")
+    page.goto(path.as_uri())
+    stance, kick = page.locator('.row[data-name="toe"] .doing').all()
+    lane, long, short = (one.bounding_box() for one in (page.locator(".lane").last, stance, kick))
+    assert lane
+    assert long
+    assert short
+    assert long["width"] == pytest.approx(lane["width"] / 2, abs=1)
+    assert 2 < short["width"] < 8
+    assert short["y"] > long["y"]
+    assert short["height"] < long["height"]
+    assert complaints == []

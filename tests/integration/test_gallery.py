@@ -11,7 +11,7 @@ from footfall import Client, Job, Result
 from footfall.cli import codes
 from footfall.serving import ServeSettings, Service
 
-pytestmark = [pytest.mark.slow, pytest.mark.timeout(600)]  # the first test waits for all of it
+pytestmark = [pytest.mark.slow, pytest.mark.timeout(1200)]  # the first test waits for all of it
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +41,7 @@ def ended(
 ) -> dict[str, tuple[str, Result]]:
     names = [one["name"] for one in client.examples() if one["kind"] == kind]
     jobs = {name: post(client.example(name)).id for name in names}
-    return {name: (job, client.wait(job, timeout=100)) for name, job in jobs.items()}
+    return {name: (job, client.wait(job, timeout=300)) for name, job in jobs.items()}
 
 
 def test_every_example_converges_with_a_certificate(

@@ -1,7 +1,7 @@
 """Any damage to a problem is either harmless or a BadProblem that points at a real place."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 from hypothesis import given, settings
@@ -40,8 +40,8 @@ def _at(document: Any, way: tuple[Any, ...]) -> Any:
 
 
 @st.composite
-def damaged(draw: st.DrawFn) -> Any:
-    sound = draw(st.sampled_from([cart_pole, hop]))
+def damaged(draw: st.DrawFn, *sources: Callable[[], Any]) -> Any:
+    sound = draw(st.sampled_from(sources or (cart_pole, hop)))
     document: Any = sound()
     for _ in range(draw(st.integers(1, 3))):
         way = draw(st.sampled_from(list(_places(document))))

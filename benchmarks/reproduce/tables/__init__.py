@@ -1,6 +1,7 @@
 """The tables, in the order of the document."""
 
 from benchmarks.reproduce.rows import Table
+from benchmarks.reproduce.tables.biped import BIPED
 from benchmarks.reproduce.tables.block import BLOCK_FORCE, BLOCK_WORK
 from benchmarks.reproduce.tables.cart_pole import CART_POLE, CART_POLE_DERIVATIVES
 from benchmarks.reproduce.tables.pendulum import PENDULUM
@@ -10,6 +11,7 @@ from benchmarks.reproduce.tables.slip import SLIP
 TABLES: tuple[Table, ...] = (
     BLOCK_FORCE,
     CART_POLE,
+    BIPED,
     BLOCK_WORK,
     QUADROTOR,
     PENDULUM,

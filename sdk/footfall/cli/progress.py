@@ -56,6 +56,8 @@ class _Lines:
             return _stage(data)
         if event.type == "mesh":
             return f"mesh {data['mesh'] + 1}: {_mesh_words(data)}"
+        if event.type == "homotopy":
+            return f"  {_pass_words(data)}"
         if event.type == "state":
             said = "" if data["status"] == "failed" else data.get("message", "")  # an error says it
             return f"job {words(data['status'])}" + (f": {said}" if said else "")
@@ -71,6 +73,7 @@ class _LiveTable:
 
     def __init__(self) -> None:
         self._meshes: list[dict[str, Any]] = []
+        self._pass = ""
         self._part = ""
         self._stage = "waiting"
         self._iteration = ""
@@ -85,12 +88,17 @@ class _LiveTable:
             self._stage = words(event.data["status"])
         elif event.type == "mesh":
             self._meshes.append(event.data)
+            self._pass = ""
+        elif event.type == "homotopy":
+            self._pass = _pass_words(event.data)
         elif said := _step_words(event):
             self._iteration = said
 
     def __rich__(self) -> Group:
         self._spinner.update(text=f"{self._part}{self._stage}  {self._iteration}")
-        return Group(*([self._table()] if self._meshes else []), self._spinner)
+        table = [self._table()] if self._meshes else []
+        last = [self._pass] if self._pass else []
+        return Group(*table, *last, self._spinner)
 
     def _table(self) -> Table:
         table = Table(box=None, header_style="dim", padding=(0, 2, 0, 0))
@@ -120,6 +128,14 @@ def _mesh_words(data: dict[str, Any]) -> str:
     return (
         f"{data['segments']} segments, max error {error} (tolerance {goal}), "
         f"objective {number(data['objective'], 10)}, {data['nlp_iterations']} iterations"
+    )
+
+
+def _pass_words(data: dict[str, Any]) -> str:
+    return (
+        f"relaxed to {number(data['relaxation'], 3)} by {words(data['form'])}: "
+        f"{words(data['status'])}, objective {number(data['objective'], 8)}, "
+        f"{plural(data['nlp_iterations'], 'iteration')}"
     )
 
 

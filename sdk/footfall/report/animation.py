@@ -101,5 +101,5 @@ def _usual(seconds: float) -> str:
 def _legend(motion: Motion) -> str:
     parts = ["lines: ways of the centres of mass"]
     if any(clip.forces for clip in motion.clips):
-        parts.append("arrows: contact forces")
+        parts.append("arrows: contact forces" + (", the longest cut" if motion.cut else ""))
     return "; ".join(parts)

@@ -104,6 +104,35 @@ def convergence(refinement: Mapping[str, Any]) -> list[Figure]:
     ]
 
 
+def homotopy(passes: Sequence[Mapping[str, Any]]) -> list[Figure]:
+    """Largest product of a pair and objective from pass to pass; nothing for a single one."""
+    if len(passes) < 2:
+        return []
+    count = np.arange(1.0, len(passes) + 1)
+    relaxed = [one["relaxation"] for one in passes]
+    products = [one["residual"] for one in passes]
+    values = [one["objective"] for one in passes]
+    axis = Scale(0.7, len(passes) + 0.3, whole=True)
+    lines = [
+        points("relaxation", "m1", count, relaxed),
+        points("largest product of a pair", "s0", count, products),
+    ]
+    levels = [one for one in [*relaxed, *products] if one is not None]
+    objective = points("objective", "s1", count, values)
+    height = linear([one for one in values if one is not None], 0.15)
+    return [
+        Figure(
+            "Largest product of a pair",
+            lines,
+            axis,
+            logarithmic(levels),
+            notes=["over the passes; pale: the relaxation"],
+            unit="",
+        ),
+        Figure("Objective", [objective], axis, height, notes=["over the passes"], unit=""),
+    ]
+
+
 def points(label: str, style: str, across: Floats, raw: Sequence[float | None]) -> Series:
     """A series that is known at some places only, joined by straight lines."""
     values = np.array(raw, dtype=float)
@@ -142,7 +171,7 @@ def _drawing_times(breaks: Floats) -> Floats:
 
 
 def _with_jumps(curve: Curve, times: Floats) -> tuple[Floats, Floats]:
-    """The line's points, with a break wherever the curve jumps."""
+    """The line's points, with a break wherever the curve jumps; steps are stairs."""
     inner = curve.breaks[1:-1]
     before, after = curve(inner, side="left"), curve(inner)
     known = curve(times)
@@ -151,11 +180,12 @@ def _with_jumps(curve: Curve, times: Floats) -> tuple[Floats, Floats]:
     ends = np.isfinite(before) != np.isfinite(after)
     jumps = ends | (np.abs(after - before) > 1e-3 * max(height, 1e-12))
     where = inner[jumps]
-    time = np.concatenate([times, where, where])
-    value = np.concatenate([curve(times), before[jumps], np.full(len(where), np.nan)])
-    order = np.lexsort(
-        (np.r_[np.full(len(times), 2), np.zeros(len(where)), np.ones(len(where))], time)
-    )
+    stairs = not np.nan_to_num(curve.coefficients[:, 1:]).any()
+    lifted = where[:0] if stairs else where
+    time = np.concatenate([times, where, lifted])
+    value = np.concatenate([curve(times), before[jumps], np.full(len(lifted), np.nan)])
+    kinds = (np.full(len(times), 2), np.zeros(len(where)), np.ones(len(lifted)))
+    order = np.lexsort((np.concatenate(kinds), time))
     return time[order], value[order]
 
 

@@ -1,7 +1,7 @@
 """What bodies look like, as paths in their own frames, in m: a browser and an SVG draw the same.
 
 A body without an outline is a rod from the place where its joint holds it to each other place of
-it; one without extent is a block (on a slider) or a disc.
+it; one without extent is a block (on a slider) or a disc, and nothing where it has no mass.
 """
 
 import math
@@ -89,13 +89,13 @@ def _bodies(scene: Scene, size: float) -> Iterator[Piece]:
 
 
 def _block(body: Mapping[str, Any], size: float, *, block: bool, bare: bool) -> Iterator[str]:
-    """What stands for a body without extent."""
-    if rods(body) or bare or not body["places"]:
+    """What stands for a body without extent; a mere frame, without mass, is not seen."""
+    if rods(body) or bare or not body["places"] or not body["com"]:
         return
     centre = body["places"][0]
     if block:
         yield _box(centre, _BLOCK[0] * size, _BLOCK[1] * size)
-    elif body["com"]:
+    else:
         yield _circle(centre, _DISC * size)
 
 

@@ -1,7 +1,7 @@
 """The motion of a result's bodies, read for drawing: poses, paths, what has to be in view."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -11,7 +11,10 @@ from footfall.report.looks import Piece, corners, pieces, styles, typical_length
 from footfall.report.space import Stick, place, read_poses, seen, sticks
 
 _MARGIN = 0.07  # of the view's larger side, around all that moves
-_ARROW = 0.22  # the longest force over the view's smaller side
+_ARROW = 0.22  # a large force over the view's smaller side
+_CUT = 4.0  # arrows are at most so many times as long: impacts last for a step and are huge
+_FORCE = ("fx", "fy", "fz")
+_SLIGHT = 1e-3  # forces below this share of the largest do not count among the large ones
 _WIDE = 25.0  # a view so many times the bodies' size follows them
 _WINDOW = 8.0  # the width of the view that follows, over the bodies' size
 
@@ -66,7 +69,8 @@ class Motion:
     """All phases that have frames, in their order.
 
     ``size`` is the typical length of a body, ``follow`` the width of a view that goes along with
-    bodies which travel far (None: they do not), ``newton`` how long an arrow of 1 N is in m.
+    bodies which travel far (None: they do not), ``newton`` how long an arrow of 1 N is in m; where
+    forces are ``cut``, the longest arrows would be longer.
     """
 
     clips: list[Clip]
@@ -74,6 +78,7 @@ class Motion:
     size: float
     follow: float | None
     newton: float
+    cut: bool = False
 
     @property
     def span(self) -> tuple[float, float]:
@@ -92,7 +97,10 @@ def motion_of(result: Mapping[str, Any]) -> Motion | None:
     travels = max(view.width, view.height) > _WIDE * size
     follow = _WINDOW * size if travels else None
     smaller = min(view.width, view.height, 3 * size)
-    return Motion(clips, view, size, follow, _ARROW * smaller / _largest_force(clips))
+    large, largest = _large_forces(clips)
+    cut = largest > _CUT * large
+    clips = [_cut(clip, _CUT * large) for clip in clips] if cut else clips
+    return Motion(clips, view, size, follow, _ARROW * smaller / large, cut)
 
 
 def _read(phase: Mapping[str, Any]) -> Clip:
@@ -120,7 +128,10 @@ def _clip_in_space(phase: Mapping[str, Any]) -> Clip:
         pieces=[],
         springs=[],
         surfaces=[seen(np.array(line, dtype=float)) for line in scene["surfaces"].values()],
-        forces={},
+        forces={
+            name: np.column_stack([seen(_columns(row, *word)) for word in ("xyz", _FORCE)])[known]
+            for name, row in frames["forces"].items()
+        },
         scene=scene,
         traces=[(colour, rows[known]) for colour, rows in traces],
         sticks=[(colour, rows[known]) for colour, rows in drawn],
@@ -205,9 +216,25 @@ def _extents(clip: Clip) -> Iterator[Floats]:
         yield centre + reach
 
 
-def _largest_force(clips: Sequence[Clip]) -> float:
-    """The 95th percentile of the forces that act, in N, so that one peak does not hide them."""
+def _large_forces(clips: Sequence[Clip]) -> tuple[float, float]:
+    """The 95th percentile of the forces that act, and their largest, in N.
+
+    So one peak does not hide the others, and those that are nearly nothing do not count.
+    """
     sizes = [np.hypot(*rows[:, 2:].T) for clip in clips for rows in clip.forces.values()]
     acting = np.concatenate([np.zeros(0), *sizes])
     acting = acting[np.isfinite(acting) & (acting > 1e-9)]
-    return float(np.percentile(acting, 95)) if len(acting) else 1.0
+    if not len(acting):
+        return 1.0, 1.0
+    largest = float(acting.max())
+    return float(np.percentile(acting[acting > _SLIGHT * largest], 95)), largest
+
+
+def _cut(clip: Clip, most: float) -> Clip:
+    """The forces made no larger than ``most``, in N, in their directions."""
+    forces = {}
+    for name, rows in clip.forces.items():
+        sizes = np.hypot(*rows[:, 2:].T)
+        share = np.minimum(1.0, most / np.where(sizes > most, sizes, most))
+        forces[name] = np.column_stack([rows[:, :2], rows[:, 2:] * share[:, None]])
+    return replace(clip, forces=forces)

@@ -3,16 +3,16 @@
 from collections.abc import Mapping
 from typing import Any
 
-from footfall.report.figures import Figure, convergence, mesh_errors
+from footfall.report.figures import Figure, convergence, homotopy, mesh_errors
 from footfall.report.markup import Markup, el, join
 from footfall.report.motion import motion_of
 from footfall.report.plots import plot
 from footfall.report.scales import scientific
-from footfall.report.sections import again, moving, numbered, remarks, section, trajectory
+from footfall.report.sections import again, modes, moving, numbered, remarks, section, trajectory
 from footfall.report.shell import document
 from footfall.report.simulated import render_simulation
-from footfall.report.tables import checks, meshes, minima, pairs, residuals, stages
-from footfall.summary import VERDICTS, plural, published_mesh, words
+from footfall.report.tables import checks, meshes, minima, pairs, passes, residuals, stages
+from footfall.summary import VERDICTS, error_name, plural, published_mesh, words
 
 _STANDING = {"converged": "good", "acceptable": "fair", "cancelled": "quiet"}
 _PARTS = ("build", "solve", "refine", "certify")
@@ -42,9 +42,11 @@ def render(result: Mapping[str, Any], problem: Mapping[str, Any] | None = None) 
         _header(result),
         remarks(result),
         moving(motion),
+        modes(result),
         trajectory(result, problem, figures),
         _steps(result),
         _certificate(result["certificate"]),
+        _complementarity(result.get("complementarity")),
         _mesh(result["mesh_refinement"], figures),
         _solver(result),
         again(result, problem),
@@ -57,11 +59,13 @@ def _header(result: Mapping[str, Any]) -> Markup:
     verdict = result["certificate"]["verdict"]
     facts = {
         "objective": scientific(result["objective"], 10),
-        "largest error": scientific(mesh.get("max_error"), 3),
+        error_name(result): scientific(mesh.get("max_error"), 3),
         "mesh": plural(mesh["segments"], "segment") if mesh else "\N{EN DASH}",
         "certificate": VERDICTS[verdict],
         "time": f"{result['timing']['total']:.2f} s",
     }
+    if told := result.get("mode_sequence"):
+        facts["modes"] = f"{told['distinct']} of {scientific(told['possible'], 6)}"
     return el(
         "header",
         el("p", "Footfall report", class_="kicker"),
@@ -101,6 +105,32 @@ def _certificate(certificate: Mapping[str, Any]) -> Markup:
         el("p", badge, el("span", certificate["note"]), class_="status"),
         checks(certificate),
     )
+
+
+def _complementarity(found: Mapping[str, Any] | None) -> Markup | None:
+    """How contacts were brought to strict complementarity, pass by pass."""
+    if not found:
+        return None
+    facts = {
+        "form": words(found["form"]),
+        "passes": str(len(found["passes"])),
+        "residual": f"{scientific(found['residual'], 3)} (SI)",
+        "polished": "yes" if found["polished"] else "no",
+        "stationarity": found.get("stationarity"),
+        "pinned gaps": str(found["pinned"]) if found.get("pinned") else None,
+        "dissipated by the steps": _percent(found.get("dissipation")),
+    }
+    drawn = [plot(figure, None, "low") for figure in homotopy(found["passes"])]
+    return section(
+        "Complementarity",
+        pairs({name: fact for name, fact in facts.items() if fact is not None}),
+        el("div", *drawn, class_="pair") if drawn else None,
+        passes(found["passes"]),
+    )
+
+
+def _percent(share: float | None) -> str | None:
+    return None if share is None else f"{100 * share:.3g} % of the actuators' work"
 
 
 def _mesh(refinement: Mapping[str, Any], figures: list[Figure]) -> Markup:

@@ -15,6 +15,11 @@ Phase = Mapping[str, Any]
 COSTATES = "costates"
 """The group whose series have the states' names, but are no states."""
 
+IMPULSES = "impulses"
+"""The group whose series have the forces' names; each value belongs to the step that it ends."""
+
+_LABELS = {COSTATES: "costate of {}", IMPULSES: "impulse of {}"}
+
 
 @dataclass(frozen=True)
 class Band:
@@ -64,7 +69,7 @@ def tracks(
     group: str, phases: Sequence[Phase], problem: Mapping[str, Any] | None
 ) -> Iterator[Track]:
     """The series of one group, each over all phases."""
-    bounded = None if group == COSTATES else problem
+    bounded = None if group in (COSTATES, IMPULSES) else problem
     limits = [limits_of(bounded, phase["name"]) for phase in phases]
     known = [_names(group, phase) for phase in phases]
     for name in dict.fromkeys(name for names in known for name in names):
@@ -74,7 +79,7 @@ def tracks(
             if name in names
             for value in bounds.get(name, ())
         )
-        label = f"costate of {name}" if group == COSTATES else name
+        label = _LABELS.get(group, "{}").format(name)
         yield Track(label, _joined(group, name, phases), _nodes(group, name, phases), levels)
 
 
@@ -106,6 +111,8 @@ def _piece(group: str, name: str, phase: Phase) -> tuple[Floats, Floats]:
         return np.asarray(curves["breaks"], dtype=float), rows
     if name in nodes.get("values", {}):
         value = np.array(nodes["values"][name], dtype=float)
+        if group == IMPULSES:
+            return np.asarray(phase["knots"], dtype=float), value[:, None]
         rows = np.column_stack([value[:-1] + value[1:], value[1:] - value[:-1]]) / 2
         return np.asarray(nodes["time"], dtype=float), rows
     return np.array(_span(phase)), np.full((1, 1), np.nan)

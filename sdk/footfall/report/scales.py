@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from footfall.curves import Floats
 
 _TINY = 1e-300
+_NEARLY = 1e-4  # of a step: an end that is nearly a round number has its tick
 _SUPERSCRIPTS = str.maketrans(
     "-0123456789", "\u207b\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079"
 )
@@ -44,7 +45,8 @@ class Scale:
         rough = _nice_step((self.high - self.low) / max(count, 1))
         step = max(rough, 1.0) if self.whole else rough
         decimals = max(0, -math.floor(math.log10(step) + 1e-9))
-        first, last = math.ceil(self.low / step - 1e-9), math.floor(self.high / step + 1e-9)
+        first = math.ceil(self.low / step - _NEARLY)
+        last = math.floor(self.high / step + _NEARLY)
         return [(k * step, _label(k * step, decimals)) for k in range(first, last + 1)]
 
     def _decades(self, count: int) -> list[tuple[float, str]]:

@@ -6,17 +6,25 @@ from typing import Any
 
 from footfall.report.animation import player
 from footfall.report.figures import TOGETHER, Figure, trajectories
-from footfall.report.markup import Markup, el, join
+from footfall.report.markup import Child, Markup, el, join
+from footfall.report.modes import keys, said, sequences_of, timeline
 from footfall.report.motion import Motion
-from footfall.report.phases import COSTATES
+from footfall.report.phases import COSTATES, IMPULSES
 from footfall.report.plots import plot
 from footfall.report.scales import scientific
 from footfall.report.strobe import strobe, words
-from footfall.report.tables import pairs
-from footfall.summary import plural
+from footfall.report.tables import grid, pairs
+from footfall.summary import mode_words, plural
 
 _STILL = 976.0
 """The width of the still picture in px; it is stretched with the page."""
+
+
+_FOLDED = {COSTATES: "Costates", IMPULSES: "Impulses"}
+"""Groups that few readers want."""
+
+_MODES = 200
+"""Rows of the table of modes; an accumulation of impacts has thousands."""
 
 
 def remarks(result: Mapping[str, Any]) -> Markup | None:
@@ -31,7 +39,7 @@ def remarks(result: Mapping[str, Any]) -> Markup | None:
 def trajectory(
     result: Mapping[str, Any], problem: Mapping[str, Any] | None, figures: list[Figure]
 ) -> Markup | None:
-    """All phases over one time axis; the costates folded away."""
+    """All phases over one time axis; costates and impulses folded away."""
     all_phases = result["phases"]
     if not all_phases:
         return None
@@ -40,19 +48,50 @@ def trajectory(
         id(figure): numbered(figure, figures, "low" if index else "tall")
         for index, figure in enumerate(found)
     }
-    costates = [plots[id(figure)] for figure in found if figure.group == COSTATES]
+    folded = {
+        title: [plots[id(figure)] for figure in found if figure.group == group]
+        for group, title in _FOLDED.items()
+    }
     return section(
         "Trajectory",
         _phases(all_phases)
         if len(all_phases) > 1
         else el("p", _span(all_phases[0]), class_="lead"),
-        *(plots[id(figure)] for figure in found if figure.group != COSTATES),
-        el("details", el("summary", "Costates"), *costates) if costates else None,
+        *(plots[id(figure)] for figure in found if figure.group not in _FOLDED),
+        *(el("details", el("summary", title), *them) for title, them in folded.items() if them),
         *map(_integrals, all_phases),
         join(el("h3", "Static parameters"), _values(result["static"]))
         if result.get("static")
         else None,
     )
+
+
+def modes(result: Mapping[str, Any]) -> Markup | None:
+    """Which contacts touched when, and how: the picture, and the table folded away."""
+    given = sequences_of(result)
+    if given is None:
+        return None
+    legend = [
+        el("span", el("svg", swatch, width=22, height=12, aria_hidden="true"), name, class_="key")
+        for name, swatch in keys(given)
+    ]
+    drawn, _ = timeline(given, class_="frame")
+    figure = el(
+        "figure",
+        el("div", *legend, class_="legend"),
+        el("div", drawn, class_="canvas"),
+        class_="modes",
+    )
+    found = result["mode_sequence"]["modes"]
+    rows: list[list[Child]] = [
+        [number, scientific(mode["start"], 6), scientific(mode["end"], 6), mode_words(mode)]
+        for mode, number in list(zip(found, given.found.numbers, strict=True))[:_MODES]
+    ]
+    left = len(found) - _MODES
+    more = el("p", f"and {plural(left, 'more mode')}", class_="lead") if left > 0 else None
+    table = grid(["mode", "from [s]", "to [s]", "contacts"], rows, numeric={0, 1, 2})
+    folded = el("details", el("summary", plural(len(found), "mode")), table, more)
+    return section("Modes", el("p", said(given), class_="lead"), figure, folded)
 
 
 def _span(phase: Mapping[str, Any]) -> str:

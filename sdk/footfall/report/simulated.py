@@ -8,10 +8,10 @@ from footfall.report.figures import Figure
 from footfall.report.markup import Child, Markup, el, join
 from footfall.report.motion import motion_of
 from footfall.report.scales import scientific
-from footfall.report.sections import again, moving, remarks, section, trajectory
+from footfall.report.sections import again, modes, moving, remarks, section, trajectory
 from footfall.report.shell import document
 from footfall.report.tables import grid, pairs
-from footfall.simulated import EVENT_HEAD, energy_words, event_row, mode_words
+from footfall.simulated import EVENT_HEAD, energy_words, event_row
 from footfall.summary import plural, words
 
 _STANDING = {
@@ -37,9 +37,9 @@ def render_simulation(
         _header(result),
         remarks(result),
         moving(motion),
+        modes(result),
         trajectory({**result, "phases": phases}, None, figures),
         _events(result["events"]),
-        _modes(result.get("mode_sequence")),
         _time(result["timing"]),
         again(result, simulation, "simulate"),
     )
@@ -50,11 +50,11 @@ def _header(result: Mapping[str, Any]) -> Markup:
     ends = [time for phase in result["phases"] for time in phase["knots"]]
     span = f"{scientific(ends[0], 6)} to {scientific(ends[-1], 6)} s" if ends else None
     energy = result.get("energy")
-    modes = result.get("mode_sequence") or {}
+    found = result.get("mode_sequence") or {}
     facts = {
         "motion": span,
         "events": str(len(result["events"])) if result["events"] else None,
-        "modes": str(len(modes["modes"])) if modes else None,
+        "modes": str(len(found["modes"])) if found else None,
         "energy": energy_words(energy) if energy else None,
         "time": f"{result['timing']['total']:.2f} s",
     }
@@ -80,20 +80,6 @@ def _events(events: Sequence[Mapping[str, Any]]) -> Markup | None:
     return section(
         "Events", grid(EVENT_HEAD, rows, numeric={2, 3, 4, 5}), _more(len(events), "event")
     )
-
-
-def _modes(found: Mapping[str, Any] | None) -> Markup | None:
-    if not found:
-        return None
-    rows: list[list[Child]] = [
-        [scientific(mode["start"], 6), scientific(mode["end"], 6), mode_words(mode)]
-        for mode in islice(found["modes"], _ROWS)
-    ]
-    said = (
-        f"{found['distinct']} distinct modes of {scientific(found['possible'], 6)} possible ones."
-    )
-    table = grid(["from [s]", "to [s]", "contacts"], rows, numeric={0, 1})
-    return section("Modes", el("p", said, class_="lead"), table, _more(len(found["modes"]), "mode"))
 
 
 def _more(count: int, noun: str) -> Markup | None:

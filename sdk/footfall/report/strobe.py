@@ -13,6 +13,7 @@ FRAMES = 9
 _TALLEST = 0.62  # of the picture's width
 _LEAST = 0.2
 _SPOKEN = f"{FRAMES} frames of the motion over one another"
+_SEEN = 0.02  # of a body's size: shorter arrows are left out
 _SPRING = 12  # bends of a spring that is drawn
 
 
@@ -63,7 +64,8 @@ def fitted(view: Box) -> Box:
 def words(motion: Motion) -> str:
     """What the picture shows."""
     start, end = (scientific(time, 4) for time in motion.span)
-    return f"{FRAMES} frames from {start} to {end} s, the last one strong; lines: centres of mass"
+    text = f"{FRAMES} frames from {start} to {end} s, the last one strong; lines: centres of mass"
+    return f"{text}; arrows: contact forces" if any(one.forces for one in motion.clips) else text
 
 
 def spring(start: Floats, end: Floats, breadth: float) -> str:
@@ -78,13 +80,42 @@ def spring(start: Floats, end: Floats, breadth: float) -> str:
 
 
 def _frames(motion: Motion) -> Iterator[Markup]:
-    times = np.linspace(*motion.span, FRAMES)
-    for index, time in enumerate(times):
+    """The frames, and over them the forces, of which the old ones are pale too."""
+    arrows: list[Markup] = []
+    for index, time in enumerate(_times(motion)):
         clip = next((one for one in motion.clips if time <= one.time[-1]), motion.clips[-1])
         at = int(np.argmin(np.abs(clip.time - time)))
         last = index == FRAMES - 1
         shade = 1.0 if last else 0.2 + 0.4 * index / (FRAMES - 1)
         yield el("g", *_frame(clip, at, motion, last), class_="shot", opacity=f"{shade:.2f}")
+        drawn = [arrow for rows in clip.forces.values() for arrow in _arrow(rows[at], motion)]
+        arrows.append(el("g", *drawn, class_="pushes", opacity=f"{0.5 + shade / 2:.2f}"))
+    yield join(*arrows)
+
+
+def _times(motion: Motion) -> Floats:
+    """Evenly over the motion, but no kick is missed.
+
+    Of a contact whose force is seen in none of the frames the nearest of those between the first
+    and the last goes to where that force is largest.
+    """
+    times = np.linspace(*motion.span, FRAMES)
+    free = list(range(1, FRAMES - 1))
+    for clip in motion.clips:
+        for rows in clip.forces.values():
+            sizes = np.nan_to_num(np.hypot(*rows[:, 2:].T)) * motion.newton
+            inside = times[(times >= clip.time[0]) & (times <= clip.time[-1])]
+            seen = np.interp(inside, clip.time, sizes)
+            peak = float(clip.time[np.argmax(sizes)])
+            if (
+                free
+                and sizes.max() > _SEEN * motion.size
+                and not np.any(seen > _SEEN * motion.size)
+            ):
+                moved = min(free, key=lambda index: abs(times[index] - peak))
+                times[moved] = peak
+                free.remove(moved)
+    return np.sort(times)
 
 
 def _frame(clip: Clip, at: int, motion: Motion, last: bool) -> Iterator[Markup]:
@@ -102,15 +133,12 @@ def _frame(clip: Clip, at: int, motion: Motion, last: bool) -> Iterator[Markup]:
     for ends in clip.springs:
         start, end = (clip.place(body, place)[at] for body, place in ends)
         yield el("path", class_="spring", d=spring(start, end, 0.06 * motion.size))
-    if last:
-        for rows in clip.forces.values():
-            yield from _arrow(rows[at], motion)
 
 
 def _arrow(row: Floats, motion: Motion) -> Iterator[Markup]:
     x, y, fx, fy = row
     size = float(np.hypot(fx, fy)) * motion.newton
-    if not np.isfinite(size) or size < 0.02 * motion.size:
+    if not np.isfinite(size) or size < _SEEN * motion.size:
         return
     tip = np.array([x + fx * motion.newton, y + fy * motion.newton])
     along = np.array([fx, fy]) / np.hypot(fx, fy) * min(0.1 * motion.size, 0.5 * size)

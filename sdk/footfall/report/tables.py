@@ -70,6 +70,27 @@ def stages(reports: Sequence[Mapping[str, Any]]) -> Markup:
     return grid(head, rows, numeric={0, 1, 2, 3, 4})
 
 
+def passes(reports: Sequence[Mapping[str, Any]]) -> Markup:
+    """One row for each pass of the homotopy, in the order in which they were solved."""
+    head = [
+        *("relaxation", "form", "largest product", "objective", "NLP iterations"),
+        *("seconds", "status"),
+    ]
+    rows = (
+        [
+            scientific(one["relaxation"], 3),
+            words(one["form"]),
+            scientific(one["residual"], 3),
+            scientific(one["objective"], 11),
+            one["nlp_iterations"],
+            f"{one['seconds']:.3f}",
+            words(one["status"]),
+        ]
+        for one in reports
+    )
+    return grid(head, rows, numeric={0, 2, 3, 4, 5})
+
+
 def minima(found: Sequence[Mapping[str, Any]]) -> Markup:
     """One row for each distinct minimum, with the static parameters there."""
     chosen = list(dict.fromkeys(name for one in found for name in one.get("static", {})))

@@ -4,9 +4,12 @@ import pytest
 
 from footfall.curves import Curves
 from schemas.guesses import LinearGuess, SolutionGuess
+from schemas.problem import Problem
 from schemas.reading import spec_sha256
-from schemas.results import SolutionStatus
+from schemas.results import Solution, SolutionStatus
+from schemas.stages import halfway
 from solver.campaign import solve_stages
+from solver.run import Run
 from tests.unit.campaign.problems import Recorder, read
 
 ABOVE = {"kind": "points", "time": [0, 0.5, 1], "values": {"y": [0, 0.5, 0]}}
@@ -104,3 +107,36 @@ def test_statics_go_from_stage_to_stage() -> None:
     assert isinstance(guess, SolutionGuess)
     assert guess.static["gain"] == pytest.approx(1.25, abs=1e-5)
     assert solution.static["gain"] == pytest.approx(1.25, abs=1e-5)
+
+
+def test_the_way_to_a_stage_that_fails_is_halved() -> None:
+    """A stage that ends early from far away, and well from halfway."""
+    record = Recorder()
+
+    def near(problem: Problem, run: Run) -> Solution:
+        solution = record.solve(problem, run)
+        speeds = [one.phases[0].system.parameters["r"].source for one in record.problems[-2:]]
+        if len(speeds) == 2 and abs(float(str(speeds[1])) - float(str(speeds[0]))) > 0.06:
+            failed = {"status": SolutionStatus.ITERATION_LIMIT}
+            record.problems.pop()  # the next one starts from the last good one
+            return solution.model_copy(update=failed)
+        return solution
+
+    grown = [{"phases": {"walk": {"system": {"parameters": {"r": r}}}}} for r in (0.2, 0.3)]
+    solution = solve_stages(read(stages=grown, halvings=2), near, record.run)
+    radii = [one.phases[0].system.parameters["r"].source for one in record.problems]
+    assert radii == pytest.approx([0.2, 0.25, 0.3])
+    assert [report.status for report in solution.stages] == [
+        SolutionStatus.CONVERGED,
+        SolutionStatus.ITERATION_LIMIT,
+        SolutionStatus.CONVERGED,
+        SolutionStatus.CONVERGED,
+    ]
+    assert "half of the way" in record.notes
+
+
+def test_what_has_no_numbers_in_between_is_not_halved() -> None:
+    record = Recorder()
+    posed = read(stages=[{}, {"phases": {"walk": {"bounds": {"u": [-5, 0.5]}}}}])
+    assert len(solve_stages(posed, record.solve, record.run).stages) == 2
+    assert halfway(posed, posed) is None

@@ -35,7 +35,7 @@ def test_one_hard_segment_among_many_easy_ones() -> None:
     breaks = np.linspace(0, segments, segments + 1)
     paces = np.where(np.arange(segments) == hard, pace, 1e-3)
     states = {"x": lambda t: 0 * t, "pace": lambda t: paces[t.astype(int)]}
-    phase = Case.open(problem, [result(states, {}, breaks, 0)], None, {}).phases[0]
+    phase = Case.open(problem, [result(states, {}, breaks, 0)], None, {}).curved[0]
     start = phase.curves.states.grid(PLACES)[:, :, 0]
     motion = _integrated(phase, start, 1e-7)
     exact = np.sin(paces * breaks[1:]) - np.sin(paces * breaks[:-1])

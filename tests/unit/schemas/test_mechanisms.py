@@ -257,7 +257,7 @@ def test_of_bodies_that_do_not_hang_together_the_cause_alone_is_named(
 def test_angles_that_look_like_degrees_are_remarked_on() -> None:
     given = changed("joints/hip/limits", [-90, "pi"])
     given["phases"][0] |= {
-        "initial": {"hip": 45, "ball.angle": 30, "rail": 100, "knee": -12},
+        "initial": {"hip": -45, "ball.angle": 30, "rail": 100, "knee": -12},
         "bounds": {"knee": [-60, 0], "thigh.angle": [None, "90*pi/180"]},
     }
     told = [text for text in remarks(read_problem(given)) if "looks like degrees" in text]

@@ -49,6 +49,10 @@ class TestLooks:
         (path,) = bodies(rod(outline=[[0, 0], [1, 0], [0, 2]], places=[[0, 0], [5, 5]]))
         assert path == "M0 0L1 0L0 2Z"
 
+    def test_a_frame_without_mass_is_not_seen(self) -> None:
+        assert bodies(rod(places=[[0, 0]], com=None)) == []
+        assert len(bodies(rod(places=[[0, 0]], com=[0, 0]))) == 1
+
     def test_an_outline_of_two_points_is_a_rod(self) -> None:
         (path,) = bodies(rod(outline=[[0, 0], [0, 1]], places=[[0, 0], [5, 5]]))
         assert path.count("A") == 2
@@ -145,6 +149,19 @@ class TestMotion:
         longest = 10 * motion.newton
         assert 0.1 * motion.view.height < longest < 0.4 * motion.view.height
 
+    def test_a_blow_is_cut_and_hides_no_other_force(self) -> None:
+        frames = rolling()
+        (push,) = frames["forces"].values()
+        count = len(frames["time"])
+        push |= {"fx": [0.0] * count, "fy": [5e3, *[10.0] * 21, *[1e-6] * (count - 22)]}
+        motion = moving(forces=frames["forces"])
+        usual = 10 * motion.newton
+        assert 0.1 * motion.view.height < usual < 0.4 * motion.view.height
+        (rows,) = motion.clips[0].forces.values()
+        assert rows[0, 3] == pytest.approx(40.0)
+        assert motion.cut
+        assert not moving().cut
+
 
 class TestSpace:
     """A rod of 1 m that turns once about y, at y = 0.5."""
@@ -162,7 +179,10 @@ class TestSpace:
             "bodies": {"rod": {"places": [[0, 0, 0], [0, 0, 1]], "com": [0, 0, 0.5]}},
             "surfaces": {"ground": [[-1, 0, -1], [1, 0, -1]]},
         }
-        found = motion_of(throw({"time": turns, "bodies": {"rod": rod}, "scene": scene}))
+        push = {"x": still, "y": [0.5] * 21, "z": still, "fx": still, "fy": [2.0] * 21}
+        forces = {"foot": push | {"fz": [10.0] * 21}}
+        frames = {"time": turns, "bodies": {"rod": rod}, "scene": scene, "forces": forces}
+        found = motion_of(throw(frames))
         assert found is not None
         return found
 
@@ -173,6 +193,11 @@ class TestSpace:
         start, along = rows[:, :2], rows[:, 2:] - rows[:, :2]
         assert start == pytest.approx(np.tile([0.2, 0.1], (21, 1)))
         assert along == pytest.approx(np.column_stack([np.sin(angle), np.cos(angle)]))
+
+    def test_forces_are_seen_as_places_are(self) -> None:
+        (clip,) = self.motion().clips
+        assert clip.forces["foot"] == pytest.approx(np.tile([0.2, 0.1, 0.8, 10.4], (21, 1)))
+        assert strobe(self.motion(), 900.0)[0].count('class="force"') == FRAMES
 
     def test_level_ground_stays_level(self) -> None:
         (clip,) = self.motion().clips
@@ -206,8 +231,18 @@ class TestStrobe:
         assert len(self.of("surface", picture)) == 1
         assert len(self.of("trace", picture)) == 2
         assert len(self.of("spring", picture)) == FRAMES
-        assert len(self.of("force", picture)) == 1
+        arrows = [len(self.of("force", one)) for one in self.of("pushes", picture)]
+        assert arrows == [0, *[1] * (FRAMES - 1)]  # there is none at the start
         assert len(self.of("com", picture)) == 2
+
+    def test_a_kick_between_two_frames_is_seen(self) -> None:
+        frames = rolling()
+        (push,) = frames["forces"].values()
+        kick = [10.0 if index == 5 else 0.0 for index in range(len(frames["time"]))]
+        push |= {"fx": [0.0] * len(kick), "fy": kick}
+        picture = self.picture(forces=frames["forces"])
+        assert sum(len(self.of("force", one)) for one in self.of("pushes", picture)) == 1
+        assert len(self.of("shot", picture)) == FRAMES
 
     def test_a_frame_stands_where_the_bodies_are(self) -> None:
         shot = self.of("shot", self.picture())[(FRAMES - 1) // 2]
@@ -266,7 +301,7 @@ class TestPage:
             {"name": "throw"},
         )
         for words in ("Footfall simulation", "finished", "impact", "1.25", "sliding right",
-                      "1 distinct modes of 4", "drift 0.25", "footfall simulate"):  # fmt: skip
+                      "1 distinct mode of 4", "drift 0.25", "footfall simulate"):  # fmt: skip
             assert words in page.replace("\N{MINUS SIGN}", "-")
 
     def test_the_motion_is_in_the_page_only_where_there_is_one(self) -> None:

@@ -40,3 +40,15 @@ def test_meshes_and_ends() -> None:
         "job succeeded: The iterates diverged.",
         "job running",
     ]
+
+
+def test_passes_of_a_homotopy() -> None:
+    one = {"mesh": 0, "relaxation": 1e-3, "form": "fischer_burmeister", "status": "optimal"}
+    said = lines(
+        ("homotopy", {**one, "nlp_iterations": 7, "objective": 2.5, "residual": 1e-3}),
+        ("homotopy", {**one, "nlp_iterations": 1, "objective": None, "residual": None}),
+    )
+    assert said == [
+        "  relaxed to 0.001 by fischer burmeister: optimal, objective 2.5, 7 iterations",
+        "  relaxed to 0.001 by fischer burmeister: optimal, objective -, 1 iteration",
+    ]

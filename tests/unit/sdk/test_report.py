@@ -195,11 +195,18 @@ def several(solved: dict[str, Any]) -> dict[str, Any]:
 
 
 def test_a_jump_breaks_the_line() -> None:
-    (figure,) = trajectories([phase_of("swing", 0, 2, v=[[1.0], [-1.0]])])
+    (figure,) = trajectories([phase_of("swing", 0, 2, v=[[1.0, 0.5], [-1.0, 0.5]])])
     (series,) = figure.series
     assert np.isnan(series.value).sum() == 1
-    assert series.value[np.flatnonzero(np.isnan(series.value))[0] - 1] == 1.0
+    assert series.value[np.flatnonzero(np.isnan(series.value))[0] - 1] == 1.5
     assert figure.bands == []
+
+
+def test_steps_are_stairs() -> None:
+    (figure,) = trajectories([phase_of("swing", 0, 2, v=[[1.0], [-1.0]])])
+    (series,) = figure.series
+    assert series.value[series.time == 1.0].tolist() == [1.0, -1.0]
+    assert np.isfinite(series.value).all()
 
 
 def test_time_goes_on_from_phase_to_phase(solved: dict[str, Any]) -> None:

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from footfall.summary import in_words, mesh_table, summarize
+from footfall.summary import in_words, mesh_table, pass_table, summarize
 
 
 def enriched(solved: dict[str, Any]) -> dict[str, Any]:
@@ -87,3 +87,33 @@ def test_degrees_of_each_mesh(solved: dict[str, Any]) -> None:
     assert told[0][0] == "4"
     assert told[1] == ["3", "to", "8"]
     assert all(row[0] == "-" for row in told[2:])
+
+
+def test_the_homotopy_is_told(solved: dict[str, Any]) -> None:
+    one = {"form": "equality", "status": "optimal", "nlp_iterations": 7, "seconds": 0.125}
+    found = {
+        "form": "equality",
+        "passes": [
+            one | {"relaxation": 0.1, "objective": 2.5, "residual": 0.1},
+            one | {"relaxation": 0.01, "objective": None, "residual": None, "form": "inequality"},
+        ],
+        "polished": True,
+        "residual": 1.25e-9,
+        "stationarity": "strong",
+        "pinned": 1,
+        "dissipation": 0.031,
+    }
+    result = solved | {"complementarity": found}
+    line = (
+        "  contact      complementary within 1.25e-09, polished, stationary: strong, "
+        "1 pair pinned by the ends, steps lose 3.1 % of the actuators' work"
+    )
+    assert line in summarize(result).splitlines()
+    rows = pass_table(result).splitlines()
+    assert rows[1].split() == ["0.1", "equality", "0.1", "2.5", "7", "0.125", "optimal"]
+    assert rows[2].split() == ["0.01", "inequality", "-", "-", "7", "0.125", "optimal"]
+    assert rows[1] in in_words(result)
+    rough = found | {"polished": False, "stationarity": None, "pinned": 0, "dissipation": None}
+    line = "  contact      complementary within 1.25e-09, not polished"
+    assert line in summarize(solved | {"complementarity": rough}).splitlines()
+    assert "contact" not in summarize(solved)

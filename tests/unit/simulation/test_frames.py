@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from footfall.curves import Curves
-from schemas.frames import Frames, PlanarPoses, SpatialPoses
+from schemas.frames import Frames, PlanarPoses, SpatialArrow, SpatialPoses
 from schemas.mechanisms import Mechanism
 from schemas.results import CurveGroup, Group, PhaseResult
 from schemas.systems import Ode
@@ -177,6 +177,30 @@ def test_links_in_space_have_quaternions_that_do_not_jump() -> None:
     assert found.scene.bodies["post"].places == [[0, 0, 0], [0, 0, 1]]
     assert found.scene.joints["lift"].at == [0, 0, 1]
     assert [point[2] for point in found.scene.surfaces["ground"]] == [0, 0]
+
+
+def test_forces_in_space_act_below_the_middle_of_a_sphere() -> None:
+    contacts = {"hand": {"link": "arm", "at": [1, 0, 0], "radius": 0.25}, "free": {"link": "arm"}}
+    robot = Urdf.model_validate({"kind": "urdf", "text": ROBOT, "contacts": contacts})
+    lift = Curves.through(["lift"], [0.0, END], [-1, 1], [[[0.0], [math.pi / 2]]])
+    pushes: dict[str, list[list[float | None]]] = {
+        "contact.hand.normal": [[10.0]],
+        "contact.hand.tangential_y": [[-2.0]],
+    }
+    force = CurveGroup(breaks=[0.0, END], coefficients=pushes)
+    curves = {"states": CurveGroup(**lift.to_dict()), "forces": force}
+    swung = PhaseResult(name="swung", knots=[0.0, END], groups={}, curves=curves)
+    found = with_frames(swung, robot, {}).frames
+    assert found is not None
+    assert set(found.forces) == {"hand"}
+    arrow = found.forces["hand"]
+    assert isinstance(arrow, SpatialArrow)
+    first, last = (
+        [rows[end] for rows in (arrow.x, arrow.y, arrow.z, arrow.fx, arrow.fy, arrow.fz)]
+        for end in (0, -1)
+    )
+    assert first == pytest.approx([1, 0, 0.75, 0, -2, 10])
+    assert last == pytest.approx([0, 0, -0.25, 0, -2, 10], abs=1e-12)
 
 
 def test_a_system_without_bodies_has_no_frames() -> None:

@@ -9,8 +9,9 @@ import pytest
 
 from schemas.reading import read_problem
 from solver.mesh import Mesh
-from solver.nlp import assembly
+from solver.nlp import kernel
 from solver.nlp.assembly import Nlp, assemble
+from solver.nlp.kept import forget
 from solver.nlp.program import Program
 from solver.nlp.scaling import typical_scaling
 from solver.prepare import prepare
@@ -58,7 +59,8 @@ def test_derivatives(method: dict[str, Any], objective: str) -> None:
 
 def test_derivatives_of_large_stages(monkeypatch: pytest.MonkeyPatch) -> None:
     """Above a size nobody looks for equal parts; the numbers are the same."""
-    monkeypatch.setattr(assembly, "_SHARED", 0)
+    forget()
+    monkeypatch.setattr(kernel, "_SHARED", 0)
     test_derivatives({"kind": "hermite_simpson", "segments": 3}, OBJECTIVES[1])
 
 
