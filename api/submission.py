@@ -15,7 +15,7 @@ from schemas.errors import QueueFull, RateLimited
 from schemas.inlining import inlined, inlined_simulation
 from schemas.jobs import JobKind, JobStatus
 from schemas.problem import Limits, Problem
-from schemas.reading import canonical, read_problem, spec_sha256
+from schemas.reading import read_problem, spec_sha256, written
 from schemas.remarks import simulated_remarks
 from schemas.simulations import Simulation, read_simulation
 from store.ports import JobRecord, Store
@@ -118,7 +118,7 @@ def _create(ctx: Context, draft: Draft, owner: str) -> JobRecord:
         megabytes=limits.megabytes,
         kind=draft.kind,
     )
-    ctx.store.jobs.create(record, canonical(draft.document))
+    ctx.store.jobs.create(record, written(draft.document))
     return record
 
 

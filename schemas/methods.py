@@ -116,7 +116,9 @@ class Relaxation(Posted):
     smaller member of each pair at zero and solves once more, exactly.
     """
 
-    form: Literal["equality", "inequality", "summed", "penalty", "fischer_burmeister"] = "equality"
+    form: Literal["equality", "inequality", "summed", "penalty", "fischer_burmeister"] | None = (
+        Field(default=None, description="Left out: equality in the plane, inequality in space.")
+    )
     schedule: list[Annotated[float, Field(gt=0, le=1e3)]] = Field(
         default_factory=lambda: list(_SCHEDULE), min_length=1, max_length=30
     )

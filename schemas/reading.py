@@ -100,6 +100,14 @@ def canonical(document: Posted) -> bytes:
     return orjson.dumps(_sorted(document.model_dump(mode="json", exclude={"known"})))
 
 
+def written(document: Posted) -> bytes:
+    """The same in the order in which it was posted, as it is stored and solved.
+
+    Where there are several minima, the order of bodies and joints may lead to another one.
+    """
+    return orjson.dumps(document.model_dump(mode="json", exclude={"known"}))
+
+
 def spec_sha256(document: Posted) -> str:
     """The hash of the canonical document, 64 hexadecimal digits."""
     return hashlib.sha256(canonical(document)).hexdigest()

@@ -94,7 +94,7 @@ def _parts(result: Mapping[str, Any], mesh: Mapping[str, Any]) -> list[str]:
     if minima := result.get("minima"):
         guesses = sum(len(one["seeds"]) for one in minima)
         distinct = f"{len(minima)} distinct" if len(minima) > 1 else "1"
-        lines.append(f"  minima       {distinct}, from {guesses} guesses that converged")
+        lines.append(f"  minima       {distinct}, from {guesses} guesses that led to a motion")
     return lines
 
 

@@ -116,7 +116,7 @@ def climb(
     """Go down the ladder until it ends, nothing is left to try, or the time is over.
 
     It pauses where a pass fails after one at most ``near`` was good; ``before`` is such a pause,
-    from which it goes on.
+    or the end of another ladder, from which it goes on.
     """
     passes, last = list(before.passes if before else ()), None
     good = before.outcome if before else None

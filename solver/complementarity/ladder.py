@@ -70,7 +70,7 @@ class Ladder:
         levels = tuple(relaxation.schedule)
         if warm:
             levels = tuple(level for level in levels if level <= _RESUMED) or levels[-1:]
-        return cls(levels, relaxation.form, strategies, steadies=steadies)
+        return cls(levels, relaxation.form or "equality", strategies, steadies=steadies)
 
     @property
     def strategy(self) -> Strategy:

@@ -102,7 +102,7 @@ def solve_pairs(
         return attempt
 
     known = tuple(one for one in (MONOTONE, ADAPTIVE) if one is MONOTONE or backend.offers(one))
-    relaxed = Relaxed(task, pairing, relaxation.form, pinned_pairs(task, pairing))
+    relaxed = Relaxed(task, pairing, relaxation.form or "equality", pinned_pairs(task, pairing))
     near = _NEAR if relaxation.polish else 0.0
     ladder = Ladder.of(relaxation, known, warm=warm, steadies=backend.offers(STEADY))
     enough = sum(level > near for level in ladder.levels) + 1

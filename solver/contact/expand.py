@@ -10,6 +10,7 @@ from schemas.methods import ContactImplicit
 from schemas.phases import Constraint, Phase
 from schemas.problem import Objective, Problem, Static
 from schemas.systems import ClosedForm
+from schemas.urdf import Urdf
 from schemas.values import Bound, Scalar
 from solver.complementarity import (
     RELAXATION,
@@ -58,7 +59,7 @@ def contacts_of(problem: Problem) -> Contacts:
         phase = phases[index]
         found = forces_of(phase, method)
         own = [replace(pair, phase=index) for pair in found.pairs]
-        cost = relaxation_cost(method.relaxation.form, own)
+        cost = relaxation_cost(method.relaxation.form or "equality", own)
         phases[index] = _with_forces(phase, found, method, own, cost)
         if cost is not None:
             costs.append((phase.name, cost))
@@ -91,7 +92,7 @@ def as_stepped(problem: Problem) -> Problem:
     for index, phase in enumerate(phases):
         method = _by_steps(problem, phase)
         if method is not None:
-            phases[index] = phase.model_copy(update={"method": _chosen(method)})
+            phases[index] = phase.model_copy(update={"method": _chosen(method, phase)})
     methods = [one.method for one in phases if isinstance(one.method, ContactImplicit)]
     if not methods:
         return problem
@@ -107,9 +108,13 @@ def as_stepped(problem: Problem) -> Problem:
     return problem.model_copy(update=changed)
 
 
-def _chosen(method: ContactImplicit) -> ContactImplicit:
+def _chosen(method: ContactImplicit, phase: Phase) -> ContactImplicit:
+    """With what was left out; in space equalities of many directions at one foot often fail."""
     way: Discretisation = method.discretisation or "discrete_gradient"
-    return method.model_copy(update={"discretisation": way})
+    usual = "inequality" if isinstance(phase.system, Urdf) else "equality"
+    form = method.relaxation.form or usual
+    relaxation = method.relaxation.model_copy(update={"form": form})
+    return method.model_copy(update={"discretisation": way, "relaxation": relaxation})
 
 
 def _with_forces(
@@ -125,7 +130,7 @@ def _with_forces(
         bounds[STRETCH] = Bound(Scalar(shortest), Scalar(longest))
     rows = [
         limited(label, label, tree, (0.0, 0.0))  # each pass has limits of its own
-        for label, tree, _ in relaxation_rows(method.relaxation.form, pairs)
+        for label, tree, _ in relaxation_rows(method.relaxation.form or "equality", pairs)
     ]
     integrals = dict(phase.integrals)
     if cost is not None:

@@ -23,6 +23,9 @@ from solver.numeric.tape import Array
 from solver.trajectory import Trajectory
 from solver.trajectory.trajectory import straight_lines
 
+ROUND = 1e-6
+"""What is smaller all along is nothing: the round-off of a guess is no size of its variable."""
+
 NEAR = 1e-3
 """Part of the largest gap, or metres where that is smaller, at which a guessed contact bears."""
 
@@ -123,6 +126,7 @@ class _Filling:
     def _lines(self, names: Iterable[str], known: Mapping[str, Array]) -> Curves:
         """Straight lines through the guess at the samples; through what is ``known`` instead."""
         rows = {name: self.guess.sample([name], self.fractions)[0] for name in names} | {**known}
+        rows = {name: np.where(np.any(np.abs(row) > ROUND), row, 0.0) for name, row in rows.items()}
         times = self.guess.start + (self.guess.end - self.guess.start) * self.fractions
         return straight_lines(list(rows), times, np.array(list(rows.values())))
 

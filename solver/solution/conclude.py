@@ -1,7 +1,7 @@
 """SolvedMeshs and certificate -> the published solution: status, message, advice, history."""
 
 import platform
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import cache
 from importlib.metadata import version
 
@@ -23,6 +23,7 @@ from schemas.results import (
     finite,
 )
 from solver.backends import NlpStatus
+from solver.certificate.losses import SHARE
 from solver.meshes import SolvedMesh, settled
 from solver.nlp.residuals import RowResidual
 from solver.run import Run
@@ -70,6 +71,8 @@ def _status(
     Where a finer mesh finds nothing, there is the optimum before it: its mesh is the limit.
     """
     last, chosen = solved[-1], choose(problem, solved)
+    if chosen.pairs is not None and _stalled(chosen):
+        return SolutionStatus.COMPLEMENTARITY_STALLED
     if not settled(problem, chosen):
         if last.optimal:
             return SolutionStatus.MESH_LIMIT
@@ -77,11 +80,17 @@ def _status(
         return SolutionStatus.MESH_LIMIT if lost else _STATUS[last.outcome.status]
     if last is not chosen and last.outcome.status in _ENDED[:2]:
         return _STATUS[last.outcome.status]
-    if chosen.pairs is not None and chosen.pairs.stalled:
-        return SolutionStatus.COMPLEMENTARITY_STALLED
     if certificate.verdict != "certified":
         return SolutionStatus.CERTIFICATE_FAILED
     return SolutionStatus.CONVERGED
+
+
+def _stalled(chosen: SolvedMesh) -> bool:
+    """Whether contacts were left relaxed, and nothing but that ended the solve."""
+    pairs, status = chosen.pairs, chosen.outcome.status
+    if pairs is None or status in _ENDED[:2]:
+        return False
+    return pairs.stalled or (status is NlpStatus.ACCEPTABLE and not pairs.polished)
 
 
 def _solution(
@@ -102,7 +111,11 @@ def _solution(
             *chosen.advice,
             *advice(problem, status, chosen.phases, residuals, certificate),
         ],
-        warnings=[*warnings(problem, chosen.redundancy), *solved[0].warnings],
+        warnings=[
+            *warnings(problem, chosen.redundancy),
+            *_lossy(chosen),
+            *solved[0].warnings,
+        ],
         static={name: finite(chosen.statics[name]) for name in problem.static},
         phases=_framed(problem, chosen),
         complementarity=_complementarity(chosen, certificate),
@@ -122,6 +135,15 @@ def _solution(
         timing=run.timing(),
         reproduce=Reproduce(spec_sha256=spec_sha256(problem), versions=dict(_versions())),
     )
+
+
+def _lossy(chosen: SolvedMesh) -> Iterator[str]:
+    """That the objective counts on what the steps themselves lose."""
+    if chosen.pairs is not None and chosen.max_error > SHARE:
+        yield (
+            f"Outside of impacts the steps lose {chosen.max_error:.0%} of the actuators' work by "
+            "themselves: the objective is not yet physical. Take more, or polish."
+        )
 
 
 def _complementarity(chosen: SolvedMesh, certificate: Certificate) -> Complementarity | None:

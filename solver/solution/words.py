@@ -64,6 +64,10 @@ _ADVICE = {
     ],
 }
 
+_BETWEEN = {"penetration between knots", "slips between knots"}
+_COARSE = "Between knots bodies cut corners: take more segments, or switch refinement on."
+_BOOKS = {"normal work", "friction work", "limit work", "energy balance"}
+_FICTION = "Steps of backward Euler may feed energy in: take discrete_gradient, or shorter steps."
 _LOSSY = (
     "Raise refinement.max_iterations, or method.dissipation, the share that may be lost.",
     "Little work leaves little to lose: see the energies in the certificate.",
@@ -129,6 +133,10 @@ def advice(
     failed = {row.name for row in certificate.checks if row.judged and not row.passed}
     if status is SolutionStatus.CERTIFICATE_FAILED and "control overshoot" in failed:
         lines.append(_OVERSHOOT)
+    if status is SolutionStatus.CERTIFICATE_FAILED and failed & _BETWEEN:
+        lines.append(_COARSE)
+    if status is SolutionStatus.CERTIFICATE_FAILED and _backward(problem) and failed & _BOOKS:
+        lines.append(_FICTION)
     if status in _CORNERED and problem.nonsmooth is None and any(corners(problem)):
         lines.insert(0, _CORNER)
     switches = problem.refinement is not None and problem.refinement.switches
@@ -149,6 +157,14 @@ def _meant(row: Residual) -> bool:
     return len(row.name.split(" ")) <= _WORDS or row.name.endswith(" cone")
 
 
+def _backward(problem: Problem) -> bool:
+    methods = [phase.method for phase in problem.phases]
+    return any(
+        isinstance(one, ContactImplicit) and one.discretisation == "backward_euler"
+        for one in methods
+    )
+
+
 def _runaway(problem: Problem, phases: Sequence[PhaseResult]) -> Iterator[str]:
     """Free final times, open above, that ended far away: longer is always better there."""
     for spec, phase in zip(problem.phases, phases, strict=True):
@@ -164,6 +180,7 @@ def _saturated(problem: Problem, phases: Sequence[PhaseResult]) -> Iterator[str]
         for name in spec.system.control_names:
             limits = np.array(resolve.interval(spec.bounds.get(name), constants))
             values = np.array(phase.groups["controls"].values[name], dtype=float)
+            limits = limits[np.isfinite(limits)]
             near = np.abs(values[:, None] - limits) <= _ON_BOUND * (1 + np.abs(limits))
             share = float(np.mean(near.any(axis=1)))
             if share > _MOSTLY:

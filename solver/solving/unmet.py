@@ -20,6 +20,8 @@ _MOTION = ("defect", "dynamics", "integral")
 _CONTACTS, _WRITTEN = ("contact.", "limit.", "#relaxation"), 2
 """How names of steps through contact begin, and the words of a row that a user wrote."""
 
+_TIMES = ("start time", "end time")
+
 _MET = 1e-5  # relative violation that an interior-point solver leaves where a constraint is met
 _SETTLED = (NlpStatus.OPTIMAL, NlpStatus.ACCEPTABLE)
 
@@ -80,11 +82,15 @@ def _cones(program: Program) -> Mask:
 
 
 def _of_contacts(program: Program) -> Mask:
-    """Variables (n,) of our own along steps through contact, and the relaxation of their pairs."""
+    """Variables (n,) of our own along steps through contact, their relaxation, their times."""
     ours = np.zeros(program.variables.size, dtype=bool)
     for block in program.variables.blocks:
         for name, indices in zip(block.names, block.indices, strict=True):
             ours[indices] |= "#" in name and name.startswith(_CONTACTS)
+    if ours.any():  # a motion of no length would meet most of what it is asked
+        for block in program.variables.blocks:
+            for name, indices in zip(block.names, block.indices, strict=True):
+                ours[indices] |= name in _TIMES
     return ours
 
 

@@ -3,6 +3,13 @@
 from benchmarks.reproduce.rows import Patch, Row, Table
 
 _STICTION, _LEAST_TIME = 16 / 3**0.5, 1.1063832
+_BACKWARD_EULER: Patch = {
+    "kind": "contact_implicit",
+    "segments": 20,
+    "discretisation": "backward_euler",
+    "slip_bound": 5,
+    "relaxation": {"schedule": [1e-2, 1e-3, 1e-4, 1e-5, 1e-7]},
+}
 _FIRST_ORDER = "steps are of the first order"
 
 
@@ -48,17 +55,47 @@ CONTACT = Table(
             "block, least time",
             "block_min_time",
             optimum=_LEAST_TIME,
-            tolerance=2e-3,
+            tolerance=5e-3,
             refinement=None,
             why=_FIRST_ORDER,
             kind="audit",
         ),
-        _polished("block, least time, polished", "block_min_time", 40, _LEAST_TIME, 1e-6),
+        _polished("block, least time, polished", "block_min_time", 40, _LEAST_TIME, 2e-6),
         _audited("block dropped and sliding", "block_dropped"),
         _audited("plastic ball", "plastic_ball"),
         _audited("finger, one second", "finger_no_gravity"),
         _audited("finger, two seconds", "finger_no_gravity_two_seconds"),
         _audited("finger, four seconds", "finger_no_gravity_four_seconds"),
         _audited("finger with gravity", "finger_gravity"),
+        _audited("gripper", "gripper"),
+        _audited("gripper, least force", "gripper_least_force"),
+        _audited("gripper, forces at most", "gripper_force_cap"),
+        _audited("gripper, throw", "gripper_throw"),
+        Row(
+            "Spring Flamingo, walk",
+            "spring_flamingo",
+            printed="0.04",
+            refinement=None,
+            why="the seed's cost was not audited; ours has contacts that feed nothing in",
+            kind="audit",
+        ),
+        Row(
+            "Spring Flamingo, the seed's backward Euler",
+            "spring_flamingo",
+            {"method": _BACKWARD_EULER},
+            refinement=None,
+            meets=False,
+            why="limbs are lifted by work from nothing: the audit fails, as it should",
+            kind="audit",
+        ),
+        _audited("Spring Flamingo, short steps", "spring_flamingo_short"),
+        _audited("Spring Flamingo, long steps", "spring_flamingo_long"),
+        _audited("Spring Flamingo, hop", "spring_flamingo_hop"),
+        _audited("hopper over a gap", "hopper"),
+        _audited("hopper onto a step", "hopper_step"),
+        _audited("biped over uneven ground", "biped_uneven"),
+        _audited("box that slides and tips", "box_tipping"),
+        _audited("ball with spin", "ball_spin"),
+        _audited("Solo 12 hops", "solo_hop"),
     ),
 )

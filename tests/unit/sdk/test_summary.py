@@ -48,7 +48,7 @@ def test_phases_static_values_stages_and_minima_are_counted(solved: dict[str, An
         "  static       stiffness = 12.5",
         "  static       lost = -",
         "  stages       2 solved in a row",
-        "  minima       2 distinct, from 4 guesses that converged",
+        "  minima       2 distinct, from 4 guesses that led to a motion",
     ):
         assert line in lines
     assert any(line.endswith("on the last mesh, strategy adaptive mu") for line in lines)
