@@ -49,9 +49,7 @@ def solve_polished(problem: Problem, solve: SolveOnce, run: Run) -> Solution:
     if steps.status not in GOOD_START or found is None or run.stopped():
         message = f"By steps, before the polish: {steps.message}"
         return _told(problem, steps.model_copy(update={"message": message, "stages": reports}))
-    run.on_event(
-        StageStarted(stage="build", note="the modes found, by collocation")
-    )
+    run.on_event(StageStarted(stage="build", note="the modes found, by collocation"))
     began = time.monotonic()
     phases = list(problem.phases)
     for index, method in chosen.items():
