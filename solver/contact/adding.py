@@ -14,6 +14,9 @@ from solver.hybrid.modes import limited
 
 OPEN = math.inf
 
+Start = tuple[tuple[str, ...], Constraint]
+"""What holds where a phase begins, unless all of these names are given there."""
+
 
 @dataclass(slots=True)
 class Forces:
@@ -38,7 +41,7 @@ class Forces:
     rows: list[Constraint] = field(default_factory=list)
     pairs: list[Pair] = field(default_factory=list)
     gaps: list[str] = field(default_factory=list)
-    starts: list[tuple[tuple[str, ...], Constraint]] = field(default_factory=list)
+    starts: list[Start] = field(default_factory=list)
 
     def stop(self, joint: str, side: str, away: Tree, size: float) -> None:
         """One side of a joint's limits pushes back where it is reached (000, section 3.3).

@@ -64,14 +64,14 @@ def contacts_of(problem: Problem) -> Contacts:
         if cost is not None:
             costs.append((phase.name, cost))
         pairs += own
-    first = next(iter(methods.values())).relaxation.schedule[0]
-    value = Scalar(first)
-    relaxation = Static.model_construct(bounds=Bound(value, value), guess=value)
-    changed = {
+    changed: dict[str, object] = {
         "phases": phases,
-        "static": {**problem.static, RELAXATION: relaxation},
         "objective": _objective(problem, [name for name, _ in costs]),
     }
+    if pairs:
+        value = Scalar(next(iter(methods.values())).relaxation.schedule[0])
+        relaxation = Static.model_construct(bounds=Bound(value, value), guess=value)
+        changed["static"] = {**problem.static, RELAXATION: relaxation}
     return Contacts(problem.model_copy(update=changed), tuple(pairs), methods)
 
 

@@ -4,11 +4,21 @@ import math
 from collections.abc import Iterator
 
 from schemas import resolve
-from schemas.expressions import Call, Expression, ExpressionError, Name, Number, Tree, constant
+from schemas.expressions import (
+    Call,
+    Expression,
+    ExpressionError,
+    Name,
+    Number,
+    Tree,
+    constant,
+    derivative,
+)
 from schemas.mechanisms import Mechanism, Prismatic, Revolute, Torque
 from schemas.methods import ContactImplicit
+from schemas.urdf import Urdf
 from solver.complementarity import Pair
-from solver.contact.adding import OPEN, Forces, bound, effort, same
+from solver.contact.adding import OPEN, Forces, Start, bound, effort, same
 from solver.contact.names import ContactNames, LimitNames
 from solver.hybrid.modes import friction, limited
 
@@ -116,6 +126,18 @@ def _loop(found: Forces, name: str) -> None:
         found.bounds[f"loop.{name}.{word}"] = bound(-OPEN)
         spread = f"loop.{name}#{word}"
         found.rows.append(limited(f"loop {name} {word}", spread, Name(spread), (0.0, 0.0)))
+        found.starts += list(_closed(found.system, name, spread))
+
+
+def _closed(system: Mechanism | Urdf, name: str, spread: str) -> Iterator[Start]:
+    """A loop is closed where the phase begins, and stays so as it begins to move."""
+    coordinates = tuple(system.coordinates)
+    rates = tuple(derivative(one) for one in coordinates)
+    for label, names, row in (
+        (f"start of loop {name}", coordinates, spread),
+        (f"start of loop {name} at rate", rates, derivative(spread)),
+    ):
+        yield names, limited(label, row, Name(f"initial.{row}"), (0.0, 0.0))
 
 
 def _times(a: Tree, b: Tree) -> Tree:

@@ -67,7 +67,7 @@ def _lower(problem: Problem, index: int) -> Form:
     principle = _principle(system, method)
     states, controls = system.state_names, system.control_names
     motion = whole if method is None else _bare(whole, states)
-    free, found = {*controls, *motion.forces}, {*motion.implicit}
+    free, found = {*controls, *whole.forces}, {*motion.implicit}
     known = {*states, *_stretch(method)}
 
     def is_leaf(name: str) -> bool:

@@ -68,7 +68,7 @@ def _not_lost(problem: Problem, mesh: SolvedMesh, before: Sequence[SolvedMesh]) 
     elsewhere and call it optimal.
     """
     settings = problem.refinement
-    if mesh.pairs is not None:  # what coarse steps lose, or gain, is no measure for finer ones
+    if mesh.stepped:  # what coarse steps lose, or gain, is no measure for finer ones
         return mesh
     if settings is None or not before or not mesh.optimal or not before[-1].optimal:
         return mesh

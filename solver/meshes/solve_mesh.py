@@ -106,9 +106,14 @@ class SolvedMesh:
         return float(np.max(np.concatenate(self.excess)))
 
     @property
+    def stepped(self) -> bool:
+        """Whether any phase goes by time steps through contact."""
+        return any(method.stepped for method in self.setting.transcriptions)
+
+    @property
     def max_error(self) -> float:
         """The largest error of a segment; of time steps through contact what all of them lose."""
-        if self.pairs is None:
+        if not self.stepped:
             return float(np.max(np.concatenate(self.errors)))
         parts = zip(self.setting.transcriptions, self.errors, strict=True)
         sizes = [np.sum(own) if method.stepped else np.max(own) for method, own in parts]
@@ -281,7 +286,7 @@ def _won(
     def passed(one: HomotopyPass) -> None:
         run.on_event(PassSolved(mesh=start.number, **one.model_dump()))
 
-    if (contacts := built.setting.complementary) is not None:
+    if (contacts := built.setting.complementary) is not None and contacts.pairs:
         pairing = Pairing.of(program, built.scaling, contacts.pairs)
         found = solve_pairs(
             built.task, pairing, contacts.settings, settings, watch, passed, warm=start.warm

@@ -139,7 +139,7 @@ def _solution(
 
 def _lossy(chosen: SolvedMesh) -> Iterator[str]:
     """That the objective counts on what the steps themselves lose."""
-    if chosen.pairs is not None and chosen.max_error > SHARE:
+    if chosen.stepped and chosen.max_error > SHARE:
         yield (
             f"Outside of impacts the steps lose {chosen.max_error:.0%} of the actuators' work by "
             "themselves: the objective is not yet physical. Take more, or polish."

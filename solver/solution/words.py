@@ -97,7 +97,7 @@ def message(
 ) -> str:
     """One or two sentences on how the solve ended."""
     text = _MESSAGES[status]
-    if status is SolutionStatus.MESH_LIMIT and solved[-1].pairs is not None:
+    if status is SolutionStatus.MESH_LIMIT and solved[-1].stepped:
         lost = f"{solved[-1].max_error:.0%}"
         text = f"Outside of impacts steps still lose {lost} of the actuators' work at the finest."
     if status is SolutionStatus.CERTIFICATE_FAILED:
