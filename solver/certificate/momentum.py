@@ -19,6 +19,9 @@ from solver.numeric import Array
 MOMENTUM = 1e-3
 """Of the impulses that make up a balance."""
 
+FAINT = 1e-5
+"""Of the largest impulses: less is next to nothing."""
+
 
 def momentum(case: Case) -> Check | None:
     """Impulses of gravity, contacts and whatever else is outside against the change of momentum.
@@ -84,5 +87,8 @@ def _accelerations(phase: ContactCase) -> Iterator[Finding]:
 
 
 def _positive(sizes: Array) -> Array:
-    """Where nothing pushes at all, something that is left over is compared with the rest."""
-    return np.asarray(np.maximum(sizes, 1e-9 * max(float(sizes.max()), 1e-300)))
+    """Where next to nothing pushes, something that is left over is compared with the rest.
+
+    Of forces that balance, a solver leaves as much as its tolerance.
+    """
+    return np.asarray(np.maximum(sizes, FAINT * max(float(sizes.max()), 1e-300)))
