@@ -2,22 +2,18 @@
 
 import time
 from collections.abc import Callable
-from functools import partial
 from typing import Any, NamedTuple
 
 import examples
 from schemas.problem import Problem, SolverSettings
 from schemas.reading import read_problem
 from solver.backends import Outcome, Watch, make_backend
-from solver.hybrid import expand, mode_guesses
-from solver.lowering import smoothed
-from solver.mechanics import limited
+from solver.complementarity import paired_scaling, unpaired
 from solver.nlp.program import Program
 from solver.nlp.redundancy import find_redundancy
 from solver.nlp.scaling import Scaling, typical_scaling
 from solver.nlp.task import NlpTask
-from solver.poses import loosened
-from solver.prepare import prepare
+from solver.posing import Posing
 from solver.transcribe import transcribe
 from tests.unit.solver.problems import block
 
@@ -38,15 +34,16 @@ class Posed(NamedTuple):
 
 def posed(document: dict[str, Any]) -> Posed:
     """The first mesh of a problem."""
-    posted = read_problem(document)
-    expansion = expand(posted)
-    problem = loosened(limited(smoothed(expansion.problem)))
-    guess = partial(mode_guesses, expansion, posted)
-    program = transcribe(*prepare(problem, guess)).program
+    posing = Posing.of(read_problem(document))
+    model, setting = posing.prepared()
+    program = equal = transcribe(model, setting).program
     scaling = typical_scaling(program)
+    if setting.complementary is not None:
+        scaling = paired_scaling(program, scaling, setting.complementary.pairs)
+        equal = unpaired(program, setting.complementary.pairs)
     task = NlpTask.of(program, scaling)
-    task = task.without(find_redundancy(program, scaling, task.nlp))
-    return Posed(problem, program, scaling, task)
+    task = task.without(find_redundancy(equal, scaling, task.nlp))
+    return Posed(posing.solved, program, scaling, task)
 
 
 def example(name: str, **method: Any) -> dict[str, Any]:
