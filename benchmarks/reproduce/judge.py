@@ -10,6 +10,8 @@ def judge(row: Row, measured: Measured) -> Verdict:
     """Three questions: solved, the optimum met, the printed value met or its difference told."""
     if measured.status not in SOLVED:
         return Verdict(not row.meets, f"{measured.status}. {row.why}".strip())
+    if row.kind == "audit" and not row.meets:
+        return Verdict(False, "its audit was to fail, and passed")
     if row.optimum is not None and row.meets and not _meets(row, measured):
         return Verdict(False, f"misses the optimum. {row.why}".strip())
     if not _prints(row.printed, measured) and not row.why:

@@ -63,9 +63,14 @@ def solve_polished(problem: Problem, solve: SolveOnce, run: Run) -> Solution:
         "stages": reports,
         "guessed_sequence": found,
         "complementarity": steps.complementarity,
-        "message": f"{polished.message} By steps the objective was {steps.objective:.6g}.",
+        "message": f"{polished.message}{_by_steps(steps)}",
     }
     return _told(problem, polished.model_copy(update=changed))
+
+
+def _by_steps(steps: Solution) -> str:
+    value = steps.objective
+    return "" if value is None else f" By steps the objective was {value:.6g}."
 
 
 def _told(problem: Problem, solution: Solution) -> Solution:

@@ -1,6 +1,7 @@
 """The seeds' tables: one command solves and writes them, and what is written has every row."""
 
 import re
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from random import Random
@@ -83,6 +84,9 @@ GOOD = Measured("certificate_failed", 9.24, 1e-4, 12, 0.1, 9.2226, 100)
         (Row("", "", optimum=9.24, refinement=None), GOOD, True),
         (Row("", ""), Measured("diverged", None, None, 12, 0.1), False),
         (Row("", "", printed="diverged"), GOOD, False),
+        (Row("", "", kind="audit", meets=False), GOOD, False),
+        (Row("", "", kind="audit", meets=False), replace(GOOD, status="failed: energy"), True),
+        (Row("", "", kind="audit"), replace(GOOD, status="failed: energy"), False),
     ],
 )
 def test_a_row_is_judged(row: Row, measured: Measured, passed: bool) -> None:
