@@ -129,7 +129,9 @@ class Relaxation(Posted):
     def _falling(cls, schedule: list[float]) -> list[float]:
         if any(a <= b for a, b in pairwise(schedule)):
             raise PydanticCustomError(
-                "rising_schedule", "the schedule must fall from entry to entry"
+                "rising_schedule",
+                "the schedule must fall from entry to entry",
+                {"hint": "such as [0.1, 0.01, 0.001, 1e-5, 1e-7]"},
             )
         return schedule
 

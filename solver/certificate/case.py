@@ -14,11 +14,12 @@ from schemas.mechanisms import Mechanism
 from schemas.phases import Phase
 from schemas.problem import Problem
 from schemas.results import PhaseResult
+from schemas.stepped import stepped_by
 from schemas.urdf import Urdf
 from solver.certificate.bodies import Bodies, Evaluate
 from solver.certificate.clock import ENDLESS, Clock
 from solver.certificate.scope import Numbers, Quadrature
-from solver.certificate.stepped import ContactCase, stepping
+from solver.certificate.stepped import ContactCase
 from solver.lowering import lower
 from solver.lowering.form import Form
 from solver.lowering.used import used_integrals
@@ -182,7 +183,7 @@ class Case:
         for index, (spec, form) in enumerate(zip(problem.phases, lower(problem), strict=True)):
             if spec.name not in by_name:
                 raise MalformedCurves(f"phase {spec.name} has no result")
-            if stepping(problem, index):
+            if stepped_by(problem, spec) is not None:
                 found = by_name[spec.name]
                 phases.append(ContactCase.of(problem, index, found, values, clock))
                 continue

@@ -11,10 +11,10 @@ from schemas import resolve
 from schemas.errors import InvalidModel
 from schemas.expressions import Name, Tree
 from schemas.mechanisms import Mechanism
-from schemas.methods import ContactImplicit
 from schemas.phases import Phase
 from schemas.problem import Problem
 from schemas.results import PhaseResult
+from schemas.stepped import stepped_by
 from schemas.urdf import Urdf
 from solver.certificate.clock import Clock
 from solver.certificate.complementary import complementary
@@ -67,7 +67,7 @@ class ContactCase:
         MalformedCurves
             Where it lacks a series, or the system is none of bodies.
         """
-        spec, method = problem.phases[index], stepping(problem, index)
+        spec, method = problem.phases[index], stepped_by(problem, problem.phases[index])
         system = spec.system
         steps: Steps | SpatialSteps | None = None
         if method is not None and isinstance(system, Mechanism):
@@ -202,12 +202,6 @@ class ContactCase:
         told = self.steps.published
         change = np.diff(told.v) / self.steps.lengths
         return Held(change[:, steps], {name: one[steps] for name, one in told.forces.items()})
-
-
-def stepping(problem: Problem, index: int) -> ContactImplicit | None:
-    """The method of a phase that is stepped through contact."""
-    method = problem.phases[index].method or problem.method
-    return method if isinstance(method, ContactImplicit) else None
 
 
 def _before(spec: Phase) -> list[int] | None:

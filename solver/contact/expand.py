@@ -9,7 +9,7 @@ from schemas.expressions import Call, Expression, Name, Number, Tree
 from schemas.methods import ContactImplicit
 from schemas.phases import Constraint, Phase
 from schemas.problem import Objective, Problem, Static
-from schemas.systems import ClosedForm
+from schemas.stepped import stepped_by
 from schemas.urdf import Urdf
 from schemas.values import Bound, Scalar
 from solver.complementarity import (
@@ -48,7 +48,7 @@ def contacts_of(problem: Problem) -> Contacts:
     methods = {
         index: method
         for index, phase in enumerate(problem.phases)
-        if (method := _by_steps(problem, phase)) is not None
+        if (method := stepped_by(problem, phase)) is not None
     }
     if not methods:
         return Contacts(problem)
@@ -75,13 +75,6 @@ def contacts_of(problem: Problem) -> Contacts:
     return Contacts(problem.model_copy(update=changed), tuple(pairs), methods)
 
 
-def _by_steps(problem: Problem, phase: Phase) -> ContactImplicit | None:
-    """The method of a phase that is stepped through contact; formulas are not."""
-    method = phase.method or problem.method
-    found = isinstance(method, ContactImplicit) and not isinstance(phase.system, ClosedForm)
-    return method if found and isinstance(method, ContactImplicit) else None
-
-
 def as_stepped(problem: Problem) -> Problem:
     """The problem with the choices of contact-implicit methods made.
 
@@ -90,7 +83,7 @@ def as_stepped(problem: Problem) -> Problem:
     """
     phases = list(problem.phases)
     for index, phase in enumerate(phases):
-        method = _by_steps(problem, phase)
+        method = stepped_by(problem, phase)
         if method is not None:
             phases[index] = phase.model_copy(update={"method": _chosen(method, phase)})
     methods = [one.method for one in phases if isinstance(one.method, ContactImplicit)]

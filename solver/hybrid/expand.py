@@ -6,10 +6,11 @@ from itertools import pairwise
 
 from schemas.expressions import Call, Expression, Name, Number
 from schemas.mechanisms import Mechanism, Mode
-from schemas.methods import ContactImplicit, Hybrid, HybridMode
+from schemas.methods import Hybrid, HybridMode
 from schemas.periodic import Impact, Periodic
 from schemas.phases import Phase
 from schemas.problem import Objective, Problem, Static
+from schemas.stepped import stepped_by
 from solver.hybrid.modes import durations, mode_phases, part_names
 from solver.hybrid.passages import Joined, Passage, Touchdown, chained, join
 from solver.lowering.uses import used_series
@@ -100,7 +101,7 @@ def _split(problem: Problem, phase: Phase) -> Split | None:
 
 def _parts(problem: Problem, phase: Phase, split: Split | None) -> list[Phase]:
     method = phase.method or problem.method
-    if isinstance(method, ContactImplicit):  # its first step looks back at the last one
+    if stepped_by(problem, phase) is not None:  # its first step looks back at the last one
         return [phase]
     if split is None or not isinstance(method, Hybrid) or not isinstance(phase.system, Mechanism):
         return [phase.model_copy(update={"periodic": None})]

@@ -11,6 +11,7 @@ from schemas.mechanisms import Mechanism
 from schemas.methods import ContactImplicit
 from schemas.pointers import pointer
 from schemas.problem import Problem
+from schemas.stepped import stepped_by
 from schemas.systems import SecondOrder, System
 from schemas.urdf import Urdf
 from solver.lowering.derivations import CannotDerive, Derivations
@@ -63,7 +64,7 @@ def _guarded(way: Callable[[Problem, int], Form], problem: Problem, index: int) 
 def _lower(problem: Problem, index: int) -> Form:
     system = problem.phases[index].system
     constants = resolve.parameters(system)
-    whole, method = motion_of(system), _by_steps(problem, index)
+    whole, method = motion_of(system), stepped_by(problem, problem.phases[index])
     principle = _principle(system, method)
     states, controls = system.state_names, system.control_names
     motion = whole if method is None else _bare(whole, states)
@@ -104,14 +105,6 @@ def _lower(problem: Problem, index: int) -> Form:
         holonomic=motion.holonomic,
         principle=principle,
     )
-
-
-def _by_steps(problem: Problem, index: int) -> ContactImplicit | None:
-    """The method of a phase that is stepped through contact."""
-    phase = problem.phases[index]
-    method = phase.method or problem.method
-    stepped = isinstance(phase.system, Mechanism | Urdf)
-    return method if stepped and isinstance(method, ContactImplicit) else None
 
 
 def _itself(motion: Motion, row: str) -> Name:

@@ -9,7 +9,7 @@ from solver import solve
 from solver.contact import as_stepped, contacts_of
 from solver.contact.changes import changes
 from solver.posing import Posing
-from tests.support.pushed_block import EFFORT, pushed_block
+from tests.support.pushed_block import EFFORT, pushed_block, reread
 from tests.support.stepped import published
 
 WAYS = ("discrete_gradient", "backward_euler")
@@ -152,3 +152,22 @@ def test_contacts_of_the_guess_may_bear_the_weight(bearing: bool, begins: float)
     _, setting = posing.prepared()
     normal = setting.guesses[0].sample(["contact.foot.normal"], np.array([0.2, 0.8]))
     assert normal[0] == pytest.approx(begins)
+
+
+def test_a_formula_beside_steps_is_none_of_them() -> None:
+    """The problem's method is for what has bodies; the block's end is where the formula starts."""
+    document = pushed_block(method={"segments": 10}).model_dump(mode="json", exclude_defaults=True)
+    formula = {"kind": "closed_form", "states": {"s": "initial.s + (t - initial.t)"}}
+    after = {"name": "after", "system": formula, "time": {"duration": 1}}
+    document["phases"].append(after)
+    document["objective"] = {"minimize": "move.effort"}
+    link = {"name": "s", "expression": "move.final.x - after.initial.s", "lower": 0, "upper": 0}
+    solution = solve(reread(pushed_block(), **(document | {"linkages": [link]})))
+    assert solution.status is SolutionStatus.CONVERGED, solution.message
+    assert solution.phases[1].groups["states"].values["s"][-1] == pytest.approx(2.0)
+
+
+def test_a_schedule_that_rises_is_refused_with_a_mend() -> None:
+    with pytest.raises(BadProblem) as caught:
+        pushed_block(method={"relaxation": {"schedule": [1e-3, 1e-2]}})
+    assert "such as" in caught.value.issues[0].hint
